@@ -1,0 +1,33 @@
+// Everything known about one pair of frames: the unit that is read, estimated and reported.
+#ifndef RIGEL_CORE_FRAME_PAIR_H_
+#define RIGEL_CORE_FRAME_PAIR_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rigel/core/match.h"
+#include "rigel/core/pose.h"
+#include "rigel/core/prior.h"
+#include "rigel/core/rig.h"
+
+namespace rigel {
+
+struct FramePair {
+  std::string name;      // for messages and reports; a match file's path
+  std::string sequence;  // groups pairs in reports; may be empty
+  Rig rig;
+  std::vector<Match> matches;
+  MotionPrior prior;
+  std::optional<double> time1, time2;  // seconds
+  std::optional<Pose> truth;           // f2_from_f1
+  std::optional<double> noise_px;      // 1-sigma image noise where it is known
+
+  // False with a message if the rig is invalid, a match names a camera that is not there or a
+  // pixel is not finite.
+  bool IsValid(std::string* error) const;
+};
+
+}  // namespace rigel
+
+#endif  // RIGEL_CORE_FRAME_PAIR_H_

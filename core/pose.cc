@@ -1,0 +1,108 @@
+#include "rigel/core/pose.h"
+
+#include <cmath>
+
+#include "rigel/core/angles.h"
+
+namespace rigel {
+
+Pose Pose::FromQuaternion(const Eigen::Quaterniond& q, const Eigen::Vector3d& t) {
+  Pose pose;
+  pose.R = q.normalized().toRotationMatrix();
+  pose.t = t;
+  return pose;
+}
+
+Eigen::Quaterniond Pose::Quaternion() const {
+  Eigen::Quaterniond q(R);
+  q.normalize();
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  return q;
+}
+
+Pose Pose::Inverse() const {
+  Pose inverse;
+  inverse.R = R.transpose();
+  inverse.t = -(inverse.R * t);
+  return inverse;
+}
+
+Pose operator*(const Pose& c_from_b, const Pose& b_from_a) {
+  Pose c_from_a;
+  c_from_a.R = c_from_b.R * b_from_a.R;
+  c_from_a.t = c_from_b.R * b_from_a.t + c_from_b.t;
+  return c_from_a;
+}
+
+Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+Eigen::Matrix3d RotationY(double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  Eigen::Matrix3d R;
+  R << c, 0, s, 0, 1, 0, -s, 0, c;
+  return R;
+}
+
+Eigen::Matrix3d ExpSO3(const Eigen::Vector3d& omega) {
+  // Through the unit quaternion: exactly orthonormal for any angle. sin(x/2)/x by its series
+  // where the quotient would lose digits.
+  const double angle = omega.norm();
+  const double half = 0.5 * angle;
+  const double k = angle > 1e-6 ? std::sin(half) / angle : 0.5 - angle * angle / 48.0;
+  const Eigen::Quaterniond q(std::cos(half), k * omega.x(), k * omega.y(), k * omega.z());
+  return q.normalized().toRotationMatrix();
+}
+
+Eigen::Vector3d LogSO3(const Eigen::Matrix3d& R) {
+  Eigen::Quaterniond q(R);
+  q.normalize();
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  const double sin_half = q.vec().norm();
+  // atan2(x, w)/x -> 1/w - x^2/(3 w^3).
+  const double k = sin_half > 1e-6 ? 2.0 * std::atan2(sin_half, q.w()) / sin_half
+                                   : 2.0 / q.w() * (1.0 - sin_half * sin_half / 3.0);
+  return k * q.vec();
+}
+
+Eigen::Matrix3d LeftJacobianSO3(const Eigen::Vector3d& omega) {
+  const double a2 = omega.squaredNorm();
+  const double a = std::sqrt(a2);
+  const Eigen::Matrix3d W = Skew(omega);
+  // (1 - cos a)/a^2 and (a - sin a)/a^3, by series where they would cancel.
+  double p = 0.5 - a2 / 24.0;
+  double q = 1.0 / 6.0 - a2 / 120.0;
+  if (a > 1e-3) {
+    const double sin_half = std::sin(0.5 * a);
+    p = 2.0 * sin_half * sin_half / a2;
+    q = (a - std::sin(a)) / (a2 * a);
+  }
+  return Eigen::Matrix3d::Identity() + p * W + q * W * W;
+}
+
+Eigen::Matrix3d SmallestRotation(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const Eigen::Vector3d v = a.cross(b);
+  const double c = a.dot(b);
+  const double sin_angle = v.norm();
+  if (sin_angle < 1e-12) {
+    if (c > 0) return ExpSO3(v);
+    return ExpSO3(kPi * TangentBasis(a).col(0));
+  }
+  return ExpSO3(std::atan2(sin_angle, c) / sin_angle * v);
+}
+
+Eigen::Matrix<double, 3, 2> TangentBasis(const Eigen::Vector3d& v) {
+  // Start from the axis that v is least aligned with.
+  int axis = 0;
+  v.cwiseAbs().minCoeff(&axis);
+  Eigen::Matrix<double, 3, 2> basis;
+  basis.col(0) = v.cross(Eigen::Vector3d::Unit(axis)).normalized();
+  basis.col(1) = v.cross(basis.col(0));
+  return basis;
+}
+
+}  // namespace rigel

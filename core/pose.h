@@ -1,0 +1,59 @@
+// Rigid motion of the body between the two moments, and the rotation group SO(3).
+//
+// Conventions of the whole library (docs/conventions.md):
+//   X_2 = R X_1 + t     body frame f1 at time 1, f2 at time 2; metres
+//   perturbation        R <- Exp(d) R (left, radians), t <- t + e (metres), rotation first
+//   quaternions         w x y z (Hamilton) in files
+#ifndef RIGEL_CORE_POSE_H_
+#define RIGEL_CORE_POSE_H_
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace rigel {
+
+// f2_from_f1: X_2 = R X_1 + t. Invariant: R is a rotation (R'R = I, det R = 1).
+struct Pose {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d t = Eigen::Vector3d::Zero();
+
+  // q need not be of unit length; it must not be zero.
+  static Pose FromQuaternion(const Eigen::Quaterniond& q, const Eigen::Vector3d& t);
+
+  // Unit quaternion with w >= 0.
+  Eigen::Quaterniond Quaternion() const;
+
+  Pose Inverse() const;
+  Eigen::Vector3d operator*(const Eigen::Vector3d& X) const { return R * X + t; }
+
+  bool AllFinite() const { return R.allFinite() && t.allFinite(); }
+};
+
+// c_from_a = c_from_b * b_from_a.
+Pose operator*(const Pose& c_from_b, const Pose& b_from_a);
+
+// [v]x, so that Skew(v) * w = v x w.
+Eigen::Matrix3d Skew(const Eigen::Vector3d& v);
+
+// Rotation about Y by `angle` (paper eq. d1).
+Eigen::Matrix3d RotationY(double angle);
+
+// Rotation vector (axis times angle, radians) to rotation matrix and back. Accurate near zero;
+// Log is accurate near pi too, where it returns one of the two equivalent vectors.
+Eigen::Matrix3d ExpSO3(const Eigen::Vector3d& omega);
+Eigen::Vector3d LogSO3(const Eigen::Matrix3d& R);
+
+// Left Jacobian: ExpSO3(omega + d) = ExpSO3(J d) ExpSO3(omega) to first order in d.
+Eigen::Matrix3d LeftJacobianSO3(const Eigen::Vector3d& omega);
+
+// The smallest rotation M with M a = b for unit vectors a, b; for b = -a a half turn about some
+// axis perpendicular to a.
+Eigen::Matrix3d SmallestRotation(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
+// Two unit vectors that complete the unit vector v to a right-handed orthonormal basis, as the
+// columns of a 3x2 matrix. A continuous choice is not promised.
+Eigen::Matrix<double, 3, 2> TangentBasis(const Eigen::Vector3d& v);
+
+}  // namespace rigel
+
+#endif  // RIGEL_CORE_POSE_H_

@@ -1,0 +1,57 @@
+// What is known of the motion before any image is looked at.
+#ifndef RIGEL_CORE_PRIOR_H_
+#define RIGEL_CORE_PRIOR_H_
+
+#include <optional>
+
+#include <Eigen/Core>
+
+namespace rigel {
+
+// Each part is optional. Directions are unit vectors. A sigma is the standard deviation per
+// axis, radians; a prior without a sigma makes hypotheses and never enters the refinement.
+struct MotionPrior {
+  // "Down" in the body frame at time 1 and 2 (from an IMU): g2 = R g1.
+  std::optional<Eigen::Vector3d> gravity1;
+  std::optional<Eigen::Vector3d> gravity2;
+  std::optional<double> gravity_sigma;
+
+  // Rotation axis in the body frame: R axis = axis.
+  std::optional<Eigen::Vector3d> axis;
+  std::optional<double> axis_sigma;
+
+  // Normal of the motion plane in the body frame: R normal = normal, t . normal = 0.
+  std::optional<Eigen::Vector3d> normal;
+  std::optional<double> normal_sigma;
+
+  // |t| from odometry, metres, and its standard deviation.
+  std::optional<double> distance;
+  double distance_sigma = 0.0;
+};
+
+// What a minimal solver needs to be known.
+enum class PriorKind {
+  kNone,      // 6 degrees of freedom
+  kVertical,  // gravity1 and gravity2
+  kAxis,      // axis
+  kPlanar,    // normal
+};
+
+// True if `prior` has what `kind` needs.
+inline bool HasPrior(const MotionPrior& prior, PriorKind kind) {
+  switch (kind) {
+    case PriorKind::kNone:
+      return true;
+    case PriorKind::kVertical:
+      return prior.gravity1.has_value() && prior.gravity2.has_value();
+    case PriorKind::kAxis:
+      return prior.axis.has_value();
+    case PriorKind::kPlanar:
+      return prior.normal.has_value();
+  }
+  return false;
+}
+
+}  // namespace rigel
+
+#endif  // RIGEL_CORE_PRIOR_H_

@@ -1,0 +1,34 @@
+// The calibrated camera rig: where each camera sits on the body.
+#ifndef RIGEL_CORE_RIG_H_
+#define RIGEL_CORE_RIG_H_
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "rigel/core/camera.h"
+
+namespace rigel {
+
+// body_from_camera: X_body = Q X_cam + s (metres), the same at both times.
+struct RigCamera {
+  PinholeCamera intrinsics;
+  Eigen::Matrix3d Q = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d s = Eigen::Vector3d::Zero();
+};
+
+// Camera k of the paper is rig.cameras[k].
+struct Rig {
+  std::vector<RigCamera> cameras;
+
+  int size() const { return static_cast<int>(cameras.size()); }
+
+  // False with a message if a number is not finite, a focal length is not positive or a Q is
+  // not a rotation.
+  bool IsValid(std::string* error) const;
+};
+
+}  // namespace rigel
+
+#endif  // RIGEL_CORE_RIG_H_

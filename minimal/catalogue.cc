@@ -1,0 +1,64 @@
+#include "rigel/minimal/catalogue.h"
+
+#include "rigel/minimal/four_point.h"
+#include "rigel/minimal/four_point_approx.h"
+#include "rigel/minimal/three_point.h"
+#include "rigel/minimal/three_point_approx.h"
+
+namespace rigel {
+
+const std::vector<SolverInfo>& SolverCatalogue() {
+  static const std::vector<SolverInfo> catalogue = {
+      {"4pt-approx", 4, PriorKind::kVertical, 3, false, &Solve4ptApprox,
+       "Li, Liu, Han, Lv, section 4.1, eqs. d1_1-d5"},
+      {"4pt-axis-approx", 4, PriorKind::kAxis, 3, false, &Solve4ptApprox,
+       "Li, Liu, Han, Lv, section 4.2, eqs. g2-g6"},
+      {"3pt-approx", 3, PriorKind::kPlanar, 2, false, &Solve3ptApprox,
+       "Li, Liu, Han, Lv, section 4.3, eqs. h1-h11"},
+      {"4pt-approx-polished", 4, PriorKind::kVertical, 3, false, &Solve4ptApproxPolished,
+       "4pt-approx with Newton steps on the exact determinant"},
+      {"4pt-axis-approx-polished", 4, PriorKind::kAxis, 3, false, &Solve4ptApproxPolished,
+       "4pt-axis-approx with Newton steps on the exact determinant"},
+      {"3pt-approx-polished", 3, PriorKind::kPlanar, 3, false, &Solve3ptApproxPolished,
+       "3pt-approx with Newton steps on the exact determinant"},
+      {"4pt", 4, PriorKind::kVertical, 6, true, &Solve4pt,
+       "Li, Liu, Han, Lv, eq. d5 with the exact rotation d1"},
+      {"4pt-axis", 4, PriorKind::kAxis, 6, true, &Solve4pt,
+       "Li, Liu, Han, Lv, eq. g6 with the exact rotation g1"},
+      {"3pt", 3, PriorKind::kPlanar, 4, true, &Solve3pt,
+       "Li, Liu, Han, Lv, eq. h11 with the exact rotation h1"},
+  };
+  return catalogue;
+}
+
+const SolverInfo* FindSolver(std::string_view name) {
+  for (const SolverInfo& solver : SolverCatalogue()) {
+    if (name == solver.name) return &solver;
+  }
+  return nullptr;
+}
+
+std::string SolverNames() {
+  std::string names;
+  for (const SolverInfo& solver : SolverCatalogue()) {
+    if (!names.empty()) names += ", ";
+    names += solver.name;
+  }
+  return names;
+}
+
+const char* PriorKindName(PriorKind kind) {
+  switch (kind) {
+    case PriorKind::kNone:
+      return "none";
+    case PriorKind::kVertical:
+      return "known vertical";
+    case PriorKind::kAxis:
+      return "known axis";
+    case PriorKind::kPlanar:
+      return "planar";
+  }
+  return "unknown";
+}
+
+}  // namespace rigel

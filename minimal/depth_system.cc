@@ -1,0 +1,264 @@
+#include "rigel/minimal/depth_system.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rigel {
+namespace {
+
+// Below this, relative to the rest, a quantity is rounding.
+constexpr double kNegligible = 1e-12;
+
+}  // namespace
+
+template <RotationModel kModel>
+void DepthSystem<kModel>::SetReference(const PreparedMatches& matches, const int* sample,
+                                       int sample_size) {
+  // The reference of largest parallax: parallel rays would leave d1, d2 undetermined, and the
+  // first-order bias grows with the depths.
+  int best = 0;
+  bool all_intra = matches[sample[0]].camera1 == matches[sample[0]].camera2;
+  for (int k = 1; k < sample_size; ++k) {
+    const PreparedMatch& m = matches[sample[k]];
+    if (m.parallax2 > matches[sample[best]].parallax2) best = k;
+    all_intra = all_intra && m.camera1 == m.camera2;
+  }
+  reference_ = &matches[sample[best]];
+  deflated_ = all_intra && matches.alignment().contains_identity;
+  int row = 0;
+  for (int k = 0; k < sample_size; ++k) {
+    if (k != best) SetRow(matches[sample[k]], row++);
+  }
+}
+
+template <RotationModel kModel>
+void DepthSystem<kModel>::SetRow(const PreparedMatch& m, int row) {
+  const double* x1 = reference_->x1;
+  const double* x2 = reference_->x2;
+  const double* s1 = reference_->s1;
+  const double* s2 = reference_->s2;
+  // k0 + kc cos a + ks sin a. Column 0 is -x1.(R'n), column 1 is x2.n, column 2 is the match's
+  // constraint at t = s2 - R s1.
+  const double k0[3] = {-(x1[0] * m.Xc + x1[2] * m.Xs), x2[0] * m.X0 + x2[2] * m.Z0,
+                        m.K0 - (s1[0] * m.Xc + s1[2] * m.Xs) + s2[0] * m.X0 + s2[2] * m.Z0};
+  const double kc[3] = {-(x1[0] * m.X0 + x1[1] * m.Yc + x1[2] * m.Z0),
+                        x2[0] * m.Xc + x2[1] * m.Yc + x2[2] * m.Xs,
+                        m.Kc - (s1[0] * m.X0 + s1[1] * m.Yc + s1[2] * m.Z0) +
+                            (s2[0] * m.Xc + s2[1] * m.Yc + s2[2] * m.Xs)};
+  const double ks[3] = {x1[0] * m.Z0 - x1[1] * m.Ys - x1[2] * m.X0,
+                        x2[0] * m.Xs + x2[1] * m.Ys - x2[2] * m.Xc,
+                        m.Ks + s1[0] * m.Z0 - s1[1] * m.Ys - s1[2] * m.X0 + s2[0] * m.Xs +
+                            s2[1] * m.Ys - s2[2] * m.Xc};
+  if constexpr (kModel == RotationModel::kExact) {
+    // (1 + z^2) cos a = 1 - z^2, (1 + z^2) sin a = 2 z.
+    for (int c = 0; c < 3; ++c) {
+      f_[0][row][c] = k0[c] + kc[c];
+      f_[1][row][c] = 2.0 * ks[c];
+      f_[2][row][c] = k0[c] - kc[c];
+    }
+    if (deflated_) {
+      // f_[0] is zero up to rounding here; so kc = -k0.
+      f_[0][row][2] = 2.0 * ks[2];
+      f_[1][row][2] = 2.0 * k0[2];
+      f_[2][row][2] = 0.0;
+    }
+  } else {
+    for (int c = 0; c < 3; ++c) {
+      f_[0][row][c] = k0[c] + kc[c];
+      f_[1][row][c] = ks[c];
+    }
+    if (deflated_) {
+      f_[0][row][2] = ks[2];
+      f_[1][row][2] = 0.0;
+    }
+  }
+}
+
+template <RotationModel kModel>
+void DepthSystem<kModel>::SetFourPoint(const PreparedMatches& matches, const int* sample) {
+  planar_ = false;
+  SetReference(matches, sample, 4);
+  // Central: all centres equal the reference's, at both times.
+  central_ = true;
+  for (int k = 0; k < 4 && central_; ++k) {
+    const PreparedMatch& m = matches[sample[k]];
+    for (int c = 0; c < 3; ++c) {
+      central_ = central_ && std::abs(m.s1[c] - reference_->s1[c]) < kNegligible &&
+                 std::abs(m.s2[c] - reference_->s2[c]) < kNegligible;
+    }
+  }
+}
+
+template <RotationModel kModel>
+void DepthSystem<kModel>::SetPlanar(const PreparedMatches& matches, const int* sample) {
+  planar_ = true;
+  SetReference(matches, sample, 3);
+  const double height = reference_->s2[1] - reference_->s1[1];
+  for (int k = 0; k <= kEntryDegree; ++k) {
+    for (int c = 0; c < 3; ++c) f_[k][2][c] = 0.0;
+  }
+  f_[0][2][0] = -reference_->x1[1];
+  f_[0][2][1] = reference_->x2[1];
+  f_[0][2][2] = deflated_ ? 0.0 : height;
+  central_ = std::abs(height) < kNegligible;
+  for (int k = 0; k < 3 && central_; ++k) {
+    const PreparedMatch& m = matches[sample[k]];
+    for (int c = 0; c < 3; ++c) {
+      central_ = central_ && std::abs(m.s1[c] - reference_->s1[c]) < kNegligible &&
+                 std::abs(m.s2[c] - reference_->s2[c]) < kNegligible;
+    }
+  }
+}
+
+template <RotationModel kModel>
+int DepthSystem<kModel>::Determinant(double* coefficients) const {
+  constexpr int D = kEntryDegree;
+  for (int k = 0; k <= kMaxDegree; ++k) coefficients[k] = 0.0;
+
+  // f(i,0) f(j,1) - f(i,1) f(j,0) of rows i and j.
+  const auto minor = [this](int i, int j, double* m) {
+    for (int k = 0; k <= 2 * D; ++k) m[k] = 0.0;
+    for (int a = 0; a <= D; ++a) {
+      for (int b = 0; b <= D; ++b) {
+        m[a + b] += f_[a][i][0] * f_[b][j][1] - f_[a][i][1] * f_[b][j][0];
+      }
+    }
+  };
+
+  int degree = 0;
+  double m[2 * D + 1];
+  if (central_) {
+    minor(0, planar_ ? 2 : 1, m);
+    degree = planar_ ? D : 2 * D;
+    for (int k = 0; k <= degree; ++k) coefficients[k] = m[k];
+  } else {
+    const int column_degree = deflated_ ? D - 1 : D;
+    const auto add = [&](int r, int i, int j) {
+      minor(i, j, m);
+      for (int a = 0; a <= column_degree; ++a) {
+        const double entry = f_[a][r][2];
+        for (int b = 0; b <= 2 * D; ++b) coefficients[a + b] += entry * m[b];
+      }
+    };
+    add(0, 1, 2);
+    add(1, 2, 0);
+    add(2, 0, 1);
+    degree = (planar_ ? D : 2 * D) + column_degree;
+  }
+
+  // Matches that do not move (or NaN) make every coefficient vanish: what is left is rounding.
+  double scale = 0.0;
+  for (int row = 0; row < (planar_ ? 2 : 3); ++row) {
+    for (int k = 0; k <= D; ++k) {
+      scale = std::max({scale, std::abs(f_[k][row][0]), std::abs(f_[k][row][1])});
+    }
+  }
+  double largest = 0.0;
+  for (int k = 0; k <= degree; ++k) largest = std::max(largest, std::abs(coefficients[k]));
+  if (!(scale > kNegligible) || !(largest > 0.0) || !std::isfinite(largest)) return 0;
+  return degree;
+}
+
+template <RotationModel kModel>
+void DepthSystem<kModel>::NullVector(double z, double v[3]) const {
+  double F[3][3];
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) {
+      double value = f_[kEntryDegree][r][c];
+      for (int k = kEntryDegree - 1; k >= 0; --k) value = value * z + f_[k][r][c];
+      F[r][c] = value;
+    }
+  }
+  if (central_) {
+    // Any row gives d1 : d2; take the larger.
+    const int other = planar_ ? 2 : 1;
+    const double n0 = F[0][0] * F[0][0] + F[0][1] * F[0][1];
+    const double n1 = F[other][0] * F[other][0] + F[other][1] * F[other][1];
+    const int r = n0 >= n1 ? 0 : other;
+    v[0] = F[r][1];
+    v[1] = -F[r][0];
+    v[2] = 0.0;
+    return;
+  }
+  // The cross product of the best conditioned pair of rows.
+  double best = -1.0;
+  for (int r = 0; r < 3; ++r) {
+    const double* a = F[r];
+    const double* b = F[(r + 1) % 3];
+    const double x = a[1] * b[2] - a[2] * b[1];
+    const double y = a[2] * b[0] - a[0] * b[2];
+    const double w = a[0] * b[1] - a[1] * b[0];
+    const double norm2 = x * x + y * y + w * w;
+    if (norm2 > best) {
+      best = norm2;
+      v[0] = x;
+      v[1] = y;
+      v[2] = w;
+    }
+  }
+}
+
+template <RotationModel kModel>
+void DepthSystem<kModel>::AddSolution(const PreparedMatches& matches, double z,
+                                      Solutions* solutions) const {
+  double v[3] = {0, 0, 0};
+  NullVector(z, v);
+  const double v_norm2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  if (!(v_norm2 > 0.0) || !std::isfinite(v_norm2)) return;
+
+  double c, s;
+  // sin(a) / z and (1 - cos a) / z, for the deflated column.
+  double s_over_z, versine_over_z;
+  if constexpr (kModel == RotationModel::kExact) {
+    const double w = 1.0 / (1.0 + z * z);
+    c = (1.0 - z * z) * w;
+    s = 2.0 * z * w;
+    s_over_z = 2.0 * w;
+    versine_over_z = s;
+  } else {
+    c = std::cos(z);
+    s = std::sin(z);
+    s_over_z = std::abs(z) > 1e-4 ? s / z : 1.0 - z * z / 6.0;
+    versine_over_z = std::abs(z) > 1e-4 ? (1.0 - c) / z : 0.5 * z;
+  }
+
+  const double* x1 = reference_->x1;
+  const double* x2 = reference_->x2;
+  const double* s1 = reference_->s1;
+  const double* s2 = reference_->s2;
+  // The baseline of the reference's cameras, w times too long: w b = d2 x2 - d1 R x1.
+  const Eigen::Vector3d wb(v[1] * x2[0] - v[0] * (c * x1[0] + s * x1[2]),
+                           v[1] * x2[1] - v[0] * x1[1],
+                           v[1] * x2[2] - v[0] * (c * x1[2] - s * x1[0]));
+  const double w = deflated_ ? v[2] / z : v[2];
+  const double depth = std::abs(v[0]) + std::abs(v[1]);
+  const bool has_scale = std::abs(v[2]) > kNegligible * depth && (!deflated_ || std::abs(z) > 1e-8);
+
+  Eigen::Vector3d t;
+  if (has_scale && deflated_) {
+    // t = wb / w + (I - R) s, both divided by z first: finite for any z.
+    const Eigen::Vector3d arm(versine_over_z * s1[0] - s_over_z * s1[2], 0.0,
+                              s_over_z * s1[0] + versine_over_z * s1[2]);
+    t = z * (wb / v[2] + arm);
+  } else {
+    const Eigen::Vector3d arm(s2[0] - (c * s1[0] + s * s1[2]), s2[1] - s1[1],
+                              s2[2] - (c * s1[2] - s * s1[0]));
+    if (has_scale) {
+      t = wb / w + arm;
+    } else {
+      const double norm = wb.norm();
+      if (!(norm > 0.0)) return;
+      // The sign that puts the reference in front of its cameras.
+      t = wb * ((v[0] + v[1] >= 0 ? 1.0 : -1.0) / norm) + arm;
+    }
+  }
+  Solution& solution = solutions->Append();
+  solution.R = matches.alignment().Rotation(c, s);
+  solution.t = matches.alignment().A2.transpose() * t;
+  solution.has_scale = has_scale;
+}
+
+template class DepthSystem<RotationModel::kFirstOrder>;
+template class DepthSystem<RotationModel::kExact>;
+
+}  // namespace rigel

@@ -1,0 +1,55 @@
+#include "rigel/minimal/prepared_matches.h"
+
+namespace rigel {
+namespace {
+
+PreparedMatch Prepare(const RayPair& rays, const Alignment& alignment, const Match& match) {
+  const Eigen::Vector3d p = alignment.A1 * rays.ray1.x;
+  const Eigen::Vector3d r = alignment.A2 * rays.ray2.x;
+  const Eigen::Vector3d s1 = alignment.A1 * rays.ray1.s;
+  const Eigen::Vector3d s2 = alignment.A2 * rays.ray2.s;
+  const Eigen::Vector3d q1 = s1.cross(p);
+  const Eigen::Vector3d q2 = s2.cross(r);
+  PreparedMatch m;
+  m.X0 = p.y() * r.z();
+  m.Xc = -p.z() * r.y();
+  m.Xs = p.x() * r.y();
+  m.Yc = p.z() * r.x() - p.x() * r.z();
+  m.Ys = -(p.x() * r.x() + p.z() * r.z());
+  m.Z0 = -p.y() * r.x();
+  m.K0 = r.y() * q1.y() + q2.y() * p.y();
+  m.Kc = r.x() * q1.x() + r.z() * q1.z() + q2.x() * p.x() + q2.z() * p.z();
+  m.Ks = r.x() * q1.z() - r.z() * q1.x() + q2.x() * p.z() - q2.z() * p.x();
+  for (int k = 0; k < 3; ++k) {
+    m.x1[k] = p[k];
+    m.x2[k] = r[k];
+    m.s1[k] = s1[k];
+    m.s2[k] = s2[k];
+  }
+  m.parallax2 = p.cross(r).squaredNorm();
+  m.camera1 = match.camera1;
+  m.camera2 = match.camera2;
+  return m;
+}
+
+}  // namespace
+
+PreparedMatches::PreparedMatches(const Rig& rig, const std::vector<Match>& matches,
+                                 const Alignment& alignment) {
+  Set(rig, matches, alignment);
+}
+
+void PreparedMatches::Set(const Rig& rig, const std::vector<Match>& matches,
+                          const Alignment& alignment) {
+  alignment_ = alignment;
+  matches_.clear();
+  rays_.clear();
+  matches_.reserve(matches.size());
+  rays_.reserve(matches.size());
+  for (const Match& match : matches) {
+    rays_.push_back(MakeRayPair(rig, match));
+    matches_.push_back(Prepare(rays_.back(), alignment, match));
+  }
+}
+
+}  // namespace rigel

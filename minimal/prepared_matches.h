@@ -1,0 +1,56 @@
+// What the solvers need of each match, computed once a frame pair and not once a sample.
+//
+// With p = A1 x_i, r = A2 x_j the aligned rays and R = R_y(a), c = cos a, s = sin a, one match
+// says n(a) . t + k(a) = 0 for the aligned translation t, where
+//   n = R p x r,   R'n = p x R'r,   k = r'R q_i + q_j'R p   (moments q about the body's origin)
+// are affine in (1, c, s):
+//   n   = (X0 + c Xc + s Xs,  c Yc + s Ys,  Z0 + c Xs - s Xc)
+//   R'n = (Xc + c X0 - s Z0,  c Yc + s Ys,  Xs + c Z0 + s X0)
+//   k   = K0 + c Kc + s Ks.
+#ifndef RIGEL_MINIMAL_PREPARED_MATCHES_H_
+#define RIGEL_MINIMAL_PREPARED_MATCHES_H_
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "rigel/core/match.h"
+#include "rigel/core/rays.h"
+#include "rigel/core/rig.h"
+#include "rigel/minimal/alignment.h"
+
+namespace rigel {
+
+struct PreparedMatch {
+  double X0, Xc, Xs, Yc, Ys, Z0;
+  double K0, Kc, Ks;
+  double x1[3], x2[3];  // p and r: aligned unit directions
+  double s1[3], s2[3];  // aligned camera centres, metres
+  double parallax2;     // |p x r|^2, squared sine of the angle between the aligned rays
+  int camera1, camera2;
+};
+
+class PreparedMatches {
+ public:
+  PreparedMatches() = default;
+  PreparedMatches(const Rig& rig, const std::vector<Match>& matches, const Alignment& alignment);
+
+  // Keeps the memory of the last frame pair.
+  void Set(const Rig& rig, const std::vector<Match>& matches, const Alignment& alignment);
+
+  int size() const { return static_cast<int>(matches_.size()); }
+  const PreparedMatch& operator[](int k) const { return matches_[k]; }
+  const Alignment& alignment() const { return alignment_; }
+
+  // The rays in the body frames (not aligned).
+  const RayPair& rays(int k) const { return rays_[k]; }
+
+ private:
+  Alignment alignment_;
+  std::vector<PreparedMatch> matches_;
+  std::vector<RayPair> rays_;
+};
+
+}  // namespace rigel
+
+#endif  // RIGEL_MINIMAL_PREPARED_MATCHES_H_
