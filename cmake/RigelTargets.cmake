@@ -9,10 +9,15 @@ function(rigel_warnings target)
   endif()
 endfunction()
 
+# Installed programs and shared libraries find Rigel's shared libraries wherever the prefix is.
+file(RELATIVE_PATH RIGEL_BIN_TO_LIB ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+set(CMAKE_INSTALL_RPATH $ORIGIN $ORIGIN/${RIGEL_BIN_TO_LIB})
+
 # rigel_library(core SOURCES a.cc b.cc HEADERS a.h b.h DEPENDS rigel::x): target rigel_core with alias rigel::core,
-# exported as rigel::core.
+# exported as rigel::core. BUILD_DEPENDS are header-only libraries that its sources alone include: the installed
+# package does without them.
 function(rigel_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS;BUILD_DEPENDS" ${ARGN})
   set(target rigel_${name})
   add_library(${target} ${ARG_SOURCES} ${ARG_HEADERS})
   add_library(rigel::${name} ALIAS ${target})
@@ -22,6 +27,9 @@ function(rigel_library name)
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} PUBLIC cxx_std_17)
   target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
+  foreach(library IN LISTS ARG_BUILD_DEPENDS)
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:${library}>)
+  endforeach()
   set_target_properties(${target} PROPERTIES
     EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
     SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})

@@ -12,8 +12,8 @@ namespace rigel {
 
 // A ray in a body frame: points s + d x, d > 0 in front of the camera.
 struct Ray {
-  Eigen::Vector3d x;  // unit direction x = Q u / |Q u|
-  Eigen::Vector3d s;  // camera centre, metres
+  Eigen::Vector3d x = Eigen::Vector3d::UnitZ();  // unit direction x = Q u / |Q u|
+  Eigen::Vector3d s = Eigen::Vector3d::Zero();   // camera centre, metres
 
   // Moment q = s x x (paper section 3.1).
   Eigen::Vector3d Moment() const { return s.cross(x); }

@@ -1,0 +1,106 @@
+#include "rigel/minimal/direct_sample.h"
+
+#include <cmath>
+
+#include "rigel/minimal/unit_baseline.h"
+
+namespace rigel {
+namespace {
+
+// Below this, relative to the rest, a quantity is rounding.
+constexpr double kNegligible = 1e-12;
+
+bool SameCentres(const PreparedMatch& a, const PreparedMatch& b) {
+  double difference = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    difference += std::abs(a.s1[c] - b.s1[c]) + std::abs(a.s2[c] - b.s2[c]);
+  }
+  return difference < kNegligible;
+}
+
+}  // namespace
+
+DirectSample::DirectSample(const PreparedMatches& matches, const int* sample) : matches_(&matches) {
+  reference_ = &matches[sample[0]];
+  bool all_intra = true;
+  central_ = true;
+  for (int r = 0; r < 4; ++r) {
+    const PreparedMatch& m = matches[sample[r]];
+    if (m.parallax2 > reference_->parallax2) reference_ = &m;
+    all_intra = all_intra && m.camera1 == m.camera2;
+    central_ = central_ && SameCentres(m, matches[sample[0]]);
+    rows_[r] = {m.X0, m.Xc, m.Xs, m.Yc, m.Ys, m.Z0, m.K0, m.Kc, m.Ks};
+  }
+  deflated_ = all_intra && !central_ && matches.alignment().contains_identity;
+  if (central_) {
+    for (Row& row : rows_) row.K0 = row.Kc = row.Ks = 0.0;
+    // (1 + cos a) / 2 is the constant 1 once it is multiplied by 1 + z^2, as every row is.
+    rows_[3] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.0};
+  }
+}
+
+void DirectSample::AddSolution(double z, Solutions* solutions) const {
+  const double w = 1.0 / (1.0 + z * z);
+  const double c = (1.0 - z * z) * w;
+  const double s = 2.0 * z * w;
+  double m[4][4];
+  for (int r = 0; r < 4; ++r) {
+    const Row& row = rows_[r];
+    m[r][0] = row.X0 + c * row.Xc + s * row.Xs;
+    m[r][1] = c * row.Yc + s * row.Ys;
+    m[r][2] = row.Z0 + c * row.Xs - s * row.Xc;
+    // K0 = -Kc where the zero motion satisfies the row.
+    m[r][3] = deflated_ ? 2.0 * w * (row.Ks + z * row.K0) : row.K0 + c * row.Kc + s * row.Ks;
+  }
+  double v[4];
+  NullVector4(m, v);
+  const Eigen::Vector3d direction(v[0], v[1], v[2]);
+  const double norm = direction.norm();
+  if (!(norm > 0.0) || !std::isfinite(norm)) return;
+
+  const bool has_scale =
+      !central_ && std::abs(v[3]) > kNegligible * norm && (!deflated_ || std::abs(z) > 1e-8);
+  Eigen::Vector3d t;
+  if (has_scale) {
+    t = direction * ((deflated_ ? z : 1.0) / v[3]);
+  } else {
+    t = UnitBaselineTranslation(*reference_, c, s, direction);
+  }
+  Solution& solution = solutions->Append();
+  solution.R = matches_->alignment().Rotation(c, s);
+  solution.t = matches_->alignment().A2.transpose() * t;
+  solution.has_scale = has_scale;
+}
+
+void NullVector4(const double m[4][4], double v[4]) {
+  // Cofactors of each row from the 2x2 minors of the two other pairs of rows.
+  double best = -1.0;
+  for (int half = 0; half < 2; ++half) {
+    const double* a = m[half == 0 ? 2 : 0];
+    const double* b = m[half == 0 ? 3 : 1];
+    const double m01 = a[0] * b[1] - a[1] * b[0];
+    const double m02 = a[0] * b[2] - a[2] * b[0];
+    const double m03 = a[0] * b[3] - a[3] * b[0];
+    const double m12 = a[1] * b[2] - a[2] * b[1];
+    const double m13 = a[1] * b[3] - a[3] * b[1];
+    const double m23 = a[2] * b[3] - a[3] * b[2];
+    for (int k = 0; k < 2; ++k) {
+      const double* p = m[2 * half + k];
+      const double x = p[1] * m23 - p[2] * m13 + p[3] * m12;
+      const double y = -p[0] * m23 + p[2] * m03 - p[3] * m02;
+      const double z = p[0] * m13 - p[1] * m03 + p[3] * m01;
+      const double w = -p[0] * m12 + p[1] * m02 - p[2] * m01;
+      const double norm2 = x * x + y * y + z * z + w * w;
+      if (norm2 > best) {
+        best = norm2;
+        v[0] = x;
+        v[1] = y;
+        v[2] = z;
+        v[3] = w;
+      }
+    }
+  }
+  if (!(best > 0.0)) v[0] = v[1] = v[2] = v[3] = 0.0;
+}
+
+}  // namespace rigel

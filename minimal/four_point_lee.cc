@@ -1,0 +1,71 @@
+#include "rigel/minimal/four_point_lee.h"
+
+#include "rigel/minimal/direct_sample.h"
+#include "rigel/minimal/polynomial.h"
+
+namespace rigel {
+namespace {
+
+// p q' - q p' of two quadratics each.
+void Minor(const double* p0, const double* q0, const double* p1, const double* q1, double* m) {
+  m[0] = p0[0] * q1[0] - q0[0] * p1[0];
+  m[1] = p0[0] * q1[1] + p0[1] * q1[0] - q0[0] * p1[1] - q0[1] * p1[0];
+  m[2] =
+      p0[0] * q1[2] + p0[1] * q1[1] + p0[2] * q1[0] - q0[0] * p1[2] - q0[1] * p1[1] - q0[2] * p1[0];
+  m[3] = p0[1] * q1[2] + p0[2] * q1[1] - q0[1] * p1[2] - q0[2] * p1[1];
+  m[4] = p0[2] * q1[2] - q0[2] * p1[2];
+}
+
+}  // namespace
+
+int Solve4ptLee(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
+  solutions->clear();
+  const DirectSample rows(matches, sample);
+  // (1 + z^2) times each entry; k of a deflated sample is divided by z.
+  double x[4][3], y[4][3], z[4][3], k[4][3];
+  for (int r = 0; r < 4; ++r) {
+    const DirectSample::Row& m = rows[r];
+    x[r][0] = m.X0 + m.Xc;
+    x[r][1] = 2.0 * m.Xs;
+    x[r][2] = m.X0 - m.Xc;
+    y[r][0] = m.Yc;
+    y[r][1] = 2.0 * m.Ys;
+    y[r][2] = -m.Yc;
+    z[r][0] = m.Z0 + m.Xs;
+    z[r][1] = -2.0 * m.Xc;
+    z[r][2] = m.Z0 - m.Xs;
+    if (rows.deflated()) {
+      k[r][0] = 2.0 * m.Ks;
+      k[r][1] = m.K0 - m.Kc;
+      k[r][2] = 0.0;
+    } else {
+      k[r][0] = m.K0 + m.Kc;
+      k[r][1] = 2.0 * m.Ks;
+      k[r][2] = m.K0 - m.Kc;
+    }
+  }
+
+  // Laplace expansion: minors of columns (x, z) of rows (i, j) with those of (y, k) of the others.
+  double c[9] = {};
+  const auto add = [&](int i, int j, int p, int q, double sign) {
+    double a[5], b[5];
+    Minor(x[i], z[i], x[j], z[j], a);
+    Minor(y[p], k[p], y[q], k[q], b);
+    for (int n = 0; n < 5; ++n) {
+      for (int l = 0; l < 5; ++l) c[n + l] += sign * a[n] * b[l];
+    }
+  };
+  add(0, 1, 2, 3, 1.0);
+  add(0, 2, 1, 3, -1.0);
+  add(0, 3, 1, 2, 1.0);
+  add(1, 2, 0, 3, 1.0);
+  add(1, 3, 0, 2, -1.0);
+  add(2, 3, 0, 1, 1.0);
+
+  double roots[8];
+  const int num_roots = RealRoots<8>(c, roots);
+  for (int n = 0; n < num_roots; ++n) rows.AddSolution(roots[n], solutions);
+  return solutions->size();
+}
+
+}  // namespace rigel

@@ -1,0 +1,64 @@
+// The matches of a frame pair sorted by camera pair, ready for scoring: one fundamental matrix
+// serves a whole group.
+#ifndef RIGEL_MINIMAL_GROUPED_MATCHES_H_
+#define RIGEL_MINIMAL_GROUPED_MATCHES_H_
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "rigel/core/match.h"
+#include "rigel/core/pose.h"
+#include "rigel/core/rig.h"
+#include "rigel/minimal/score_kernel.h"
+
+namespace rigel {
+
+// Matches [begin, begin + size) of camera1 at time 1 and camera2 at time 2.
+struct MatchGroup {
+  int camera1 = 0;
+  int camera2 = 0;
+  int begin = 0;
+  int size = 0;
+};
+
+class GroupedMatches {
+ public:
+  GroupedMatches() = default;
+  // `matches` must name cameras of `rig` only and have finite pixels. Copies what it needs.
+  GroupedMatches(const Rig& rig, const std::vector<Match>& matches);
+
+  const Rig& rig() const { return rig_; }
+  int size() const { return static_cast<int>(matches_.size()); }
+  const std::vector<MatchGroup>& groups() const { return groups_; }
+
+  // In grouped order; within a group in the order of the input.
+  const std::vector<Match>& matches() const { return matches_; }
+
+  // Position in the input of the match at grouped position k.
+  int original(int k) const { return original_[k]; }
+
+  // Centred pixels of a group.
+  PixelArrays Pixels(const MatchGroup& group) const;
+
+  // The group's centred fundamental matrix under `pose`.
+  Eigen::Matrix3d Fundamental(const MatchGroup& group, const Pose& pose) const;
+
+  // MSAC score: sum min(r^2, threshold^2) of the Sampson errors, pixels^2. Once it exceeds `bound`
+  // the rest is not looked at: the value returned is then above `bound`, but not the score.
+  double Score(const Pose& pose, double threshold_px, double bound, int* num_inliers) const;
+
+  // Squared Sampson errors in grouped order, pixels^2; `errors` is resized.
+  void SquaredErrors(const Pose& pose, std::vector<double>* errors) const;
+
+ private:
+  Rig rig_;
+  std::vector<MatchGroup> groups_;
+  std::vector<Match> matches_;
+  std::vector<int> original_;
+  std::vector<double> pixels_;  // x1 of all, then y1, x2, y2
+};
+
+}  // namespace rigel
+
+#endif  // RIGEL_MINIMAL_GROUPED_MATCHES_H_

@@ -1,0 +1,25 @@
+#include "rigel/minimal/ransac.h"
+
+namespace rigel {
+
+bool RansacOptions::IsValid(std::string* error) const {
+  if (!(threshold_px > 0) || !std::isfinite(threshold_px)) {
+    *error = "threshold_px must be positive and finite";
+    return false;
+  }
+  if (!(confidence > 0 && confidence < 1)) {
+    *error = "confidence must lie in (0, 1)";
+    return false;
+  }
+  if (max_iterations < 1) {
+    *error = "max_iterations must be at least 1";
+    return false;
+  }
+  if (min_iterations < 0) {
+    *error = "min_iterations must not be negative";
+    return false;
+  }
+  return true;
+}
+
+}  // namespace rigel

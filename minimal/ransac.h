@@ -1,0 +1,140 @@
+// RANSAC over a solver concept: it knows how to draw, solve and score, and nothing of geometry.
+//
+// MSAC score (Torr and Zisserman 2000), the number of iterations adapts to the share of inliers,
+// scoring stops early once a hypothesis can no longer win, each better hypothesis is locally
+// optimized. Deterministic: the seed fixes the result.
+#ifndef RIGEL_MINIMAL_RANSAC_H_
+#define RIGEL_MINIMAL_RANSAC_H_
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "rigel/core/random.h"
+
+namespace rigel {
+
+struct RansacOptions {
+  double threshold_px = 1.5;   // > 0; 3 sigma keeps the estimate efficient
+  double confidence = 0.9999;  // in (0, 1): that one sample of inliers was drawn
+  int max_iterations = 10000;  // >= 1
+  // At least so many: noise makes most samples of inliers poor hypotheses.
+  int min_iterations = 100;
+  bool local_optimization = true;
+  uint64_t seed = 1;
+
+  bool IsValid(std::string* error) const;
+};
+
+template <class Model>
+struct RansacResult {
+  bool found = false;
+  Model best;          // after local optimization
+  double score = 0.0;  // of `best`
+  int num_inliers = 0;
+  // The best-scoring minimal hypothesis of the run, before any optimization.
+  Model best_minimal;
+  double minimal_score = 0.0;
+  int iterations = 0;
+  int64_t hypotheses = 0;
+};
+
+// What Ransac() asks of a solver. All methods are const; the solver owns the data.
+//   Model, Solutions           a motion, and a list of them with size() and operator[]
+//   num_data(), sample_size()
+//   Draw(Random*, int*)        false if no sample can be drawn
+//   MinimalSolver(sample, Solutions*)   number of solutions
+//   Score(model, bound, int* inliers)   lower is better; may stop above `bound`
+//   Admit(Model*)              false if physically impossible; may change the sign of t
+//   LocalOptimize(Model*)      false: unchanged
+template <class S, class = void>
+struct IsRansacSolver : std::false_type {};
+template <class S>
+struct IsRansacSolver<
+    S, std::void_t<
+           typename S::Model, typename S::Solutions,
+           decltype(int{std::declval<const S&>().num_data()}),
+           decltype(int{std::declval<const S&>().sample_size()}),
+           decltype(bool{std::declval<const S&>().Draw(std::declval<Random*>(),
+                                                       std::declval<int*>())}),
+           decltype(int{std::declval<const S&>().MinimalSolver(
+               std::declval<const int*>(), std::declval<typename S::Solutions*>())}),
+           decltype(double{std::declval<const S&>().Score(
+               std::declval<const typename S::Model&>(), 0.0, std::declval<int*>())}),
+           decltype(bool{std::declval<const S&>().Admit(std::declval<typename S::Model*>())}),
+           decltype(bool{
+               std::declval<const S&>().LocalOptimize(std::declval<typename S::Model*>())})>>
+    : std::true_type {};
+
+// Iterations after which, with probability `confidence`, a sample of inliers only has been drawn.
+inline int IterationsNeeded(double inlier_ratio, int sample_size, double confidence,
+                            int max_iterations) {
+  const double good = std::pow(std::clamp(inlier_ratio, 0.0, 1.0), sample_size);
+  if (!(good > 0.0)) return max_iterations;
+  if (good >= 1.0) return 1;
+  const double n = std::log1p(-confidence) / std::log1p(-good);
+  return n < max_iterations ? std::max(1, static_cast<int>(std::ceil(n))) : max_iterations;
+}
+
+// `options` must be valid. No heap allocation but what the solver's methods make.
+template <class Solver>
+RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOptions& options,
+                                            typename Solver::Solutions* solutions) {
+  static_assert(IsRansacSolver<Solver>::value, "Solver lacks a method: see IsRansacSolver");
+  using Model = typename Solver::Model;
+  RansacResult<Model> result;
+  result.score = std::numeric_limits<double>::infinity();
+  result.minimal_score = std::numeric_limits<double>::infinity();
+  Random random(options.seed);
+  int sample[64];
+  const int max_iterations = options.max_iterations;
+  int needed = max_iterations;
+  while (result.iterations < std::min(max_iterations, std::max(needed, options.min_iterations))) {
+    ++result.iterations;
+    if (!solver.Draw(&random, sample)) break;
+    solver.MinimalSolver(sample, solutions);
+    for (int k = 0; k < static_cast<int>(solutions->size()); ++k) {
+      ++result.hypotheses;
+      Model model = (*solutions)[k];
+      int inliers = 0;
+      double score = solver.Score(model, result.minimal_score, &inliers);
+      // Also false for NaN.
+      if (!(score < result.minimal_score)) continue;
+      const Model scored = model;
+      if (!solver.Admit(&model)) continue;
+      if (!(model == scored)) {
+        score = solver.Score(model, result.minimal_score, &inliers);
+        if (!(score < result.minimal_score)) continue;
+      }
+      result.found = true;
+      result.best_minimal = model;
+      result.minimal_score = score;
+      if (options.local_optimization && solver.LocalOptimize(&model)) {
+        int optimized_inliers = 0;
+        const double optimized = solver.Score(model, score, &optimized_inliers);
+        if (optimized < score) {
+          score = optimized;
+          inliers = optimized_inliers;
+        } else {
+          model = result.best_minimal;
+        }
+      }
+      if (score < result.score) {
+        result.best = model;
+        result.score = score;
+        result.num_inliers = inliers;
+        needed = IterationsNeeded(inliers / static_cast<double>(solver.num_data()),
+                                  solver.sample_size(), options.confidence, max_iterations);
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace rigel
+
+#endif  // RIGEL_MINIMAL_RANSAC_H_

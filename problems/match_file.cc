@@ -1,0 +1,836 @@
+// Reader and writer of match files. The reader goes once over the whole text and keeps no copy
+// of it: a line is split into views, and numbers are converted in place by std::from_chars.
+#include "rigel/problems/match_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "rigel/core/angles.h"
+
+namespace rigel {
+namespace {
+
+// Directions and quaternions must have unit length to within this.
+constexpr double kMaxNormError = 1e-3;
+
+constexpr std::string_view kSuffix = ".matches";
+constexpr std::string_view kRowUsage = "I U V J U2 V2 SCORE";
+constexpr size_t kRowColumns = 7;
+// "0 0 0 0 0 0 0\n": bounds what `matches N` can truthfully announce.
+constexpr size_t kMinRowBytes = 14;
+
+enum KeywordId {
+  kFormat,
+  kCamera,
+  kTime,
+  kTruth,
+  kGravity1,
+  kGravity2,
+  kGravitySigma,
+  kAxis,
+  kAxisSigma,
+  kNormal,
+  kNormalSigma,
+  kDistance,
+  kNoise,
+  kSequence,
+  kMatches,
+  kNumKeywords,
+};
+
+struct Keyword {
+  std::string_view name;
+  std::string_view usage;  // the whole line; its words name the columns in messages
+  size_t columns;
+};
+
+constexpr size_t kMaxColumns = 16;
+constexpr std::array<Keyword, kNumKeywords> kKeywords = {{
+    {"format", "format rigmatch 1", 3},
+    {"camera", "camera K pinhole FX FY CX CY WIDTH HEIGHT QW QX QY QZ SX SY SZ", 16},
+    {"time", "time T1 T2", 3},
+    {"truth", "truth QW QX QY QZ TX TY TZ", 8},
+    {"gravity1", "gravity1 GX GY GZ", 4},
+    {"gravity2", "gravity2 GX GY GZ", 4},
+    {"gravity_sigma_deg", "gravity_sigma_deg S", 2},
+    {"axis", "axis NX NY NZ", 4},
+    {"axis_sigma_deg", "axis_sigma_deg S", 2},
+    {"normal", "normal NX NY NZ", 4},
+    {"normal_sigma_deg", "normal_sigma_deg S", 2},
+    {"distance", "distance D SIGMA", 3},
+    {"noise_px", "noise_px S", 2},
+    {"sequence", "sequence NAME", 2},
+    {"matches", "matches N", 2},
+}};
+
+int FindKeyword(std::string_view word) {
+  for (int id = 0; id < kNumKeywords; ++id) {
+    if (kKeywords[id].name == word) return id;
+  }
+  return -1;
+}
+
+// Carriage returns count as blanks, which accepts CRLF line ends.
+bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+bool IsControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+void AppendHex(char c, std::string* out) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  const auto byte = static_cast<unsigned char>(c);
+  *out += "\\x";
+  *out += kDigits[byte >> 4];
+  *out += kDigits[byte & 15];
+}
+
+// A word of the file for a message: quoted, short, and printable even if the file is rubbish.
+std::string Quote(std::string_view word) {
+  constexpr size_t kMaxLength = 30;
+  std::string out = "'";
+  for (const char c : word) {
+    if (out.size() > kMaxLength) {
+      out += "...";
+      break;
+    }
+    if (IsControl(c) || (c & 0x80)) {
+      AppendHex(c, &out);
+    } else {
+      out += c;
+    }
+  }
+  return out + "'";
+}
+
+// A path for a message: a line break in a file's name must not break the message.
+std::string PrintablePath(const std::string& path) {
+  std::string out;
+  for (const char c : path) {
+    if (IsControl(c)) {
+      AppendHex(c, &out);
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string SystemMessage(int error_number) {
+  return std::generic_category().message(error_number);
+}
+
+bool ParseNumber(std::string_view word, double* value) {
+  const char* begin = word.data();
+  const char* const end = begin + word.size();
+  // from_chars takes no plus sign, though printf("%+g") writes one.
+  if (word.size() > 1 && word[0] == '+' && word[1] != '-') ++begin;
+  const auto [stop, status] = std::from_chars(begin, end, *value);
+  return status == std::errc() && stop == end && std::isfinite(*value);
+}
+
+bool ParseInteger(std::string_view word, int min, int* value) {
+  const char* const end = word.data() + word.size();
+  const auto [stop, status] = std::from_chars(word.data(), end, *value);
+  return status == std::errc() && stop == end && *value >= min;
+}
+
+// Well-formed UTF-8 (RFC 3629: no overlong forms, no surrogates, at most U+10FFFF).
+bool IsUtf8(std::string_view text) {
+  for (size_t k = 0; k < text.size();) {
+    const auto byte = [&](size_t n) {
+      return k + n < text.size() ? static_cast<unsigned char>(text[k + n]) : 0u;
+    };
+    const unsigned lead = byte(0);
+    size_t tail = 0;
+    unsigned low = 0x80, high = 0xbf;  // range of the second byte
+    if (lead >= 0xc2 && lead <= 0xdf) {
+      tail = 1;
+    } else if (lead >= 0xe0 && lead <= 0xef) {
+      tail = 2;
+      if (lead == 0xe0) low = 0xa0;
+      if (lead == 0xed) high = 0x9f;
+    } else if (lead >= 0xf0 && lead <= 0xf4) {
+      tail = 3;
+      if (lead == 0xf0) low = 0x90;
+      if (lead == 0xf4) high = 0x8f;
+    } else if (lead >= 0x80) {
+      return false;
+    }
+    if (tail > 0 && (byte(1) < low || byte(1) > high)) return false;
+    for (size_t n = 2; n <= tail; ++n) {
+      if ((byte(n) & 0xc0) != 0x80) return false;
+    }
+    k += tail + 1;
+  }
+  return true;
+}
+
+class Parser {
+ public:
+  Parser(std::string_view text, const std::string& name, std::string* error)
+      : pos_(text.data()), end_(text.data() + text.size()), name_(name), error_(error) {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (text.substr(0, 3) == kByteOrderMark) pos_ += 3;
+  }
+
+  bool Parse(FramePair* pair) {
+    if (!RejectNul()) return false;
+    pair_.name = name_;
+    if (!ParseHeader() || !FinishRig() || !ParseRows()) return false;
+    *pair = std::move(pair_);
+    return true;
+  }
+
+ private:
+  struct DeclaredCamera {
+    RigCamera camera;
+    int64_t line;
+  };
+
+  bool Fail(const std::string& message) {
+    *error_ =
+        PrintablePath(name_) + (line_ > 0 ? ":" + std::to_string(line_) : "") + ": " + message;
+    return false;
+  }
+
+  // NUL never occurs in text: UTF-16 and most binary files are told here, in plain words, even
+  // where the byte would hide in a comment.
+  bool RejectNul() {
+    const void* const nul = pos_ == end_ ? nullptr : std::memchr(pos_, 0, end_ - pos_);
+    if (nul == nullptr) return true;
+    line_ = 1 + std::count(pos_, static_cast<const char*>(nul), '\n');
+    return Fail("a NUL byte, expected a match file (UTF-8 text)");
+  }
+
+  // Splits the next line that has content into columns_. False at the end of the text; line_ is
+  // then the last line.
+  bool NextLine() {
+    const char* p = pos_;
+    while (p != end_) {
+      ++line_;
+      num_columns_ = 0;
+      for (;;) {
+        while (p != end_ && IsBlank(*p)) ++p;
+        if (p == end_ || *p == '\n') break;
+        if (num_columns_ == 0 && *p == '#') {
+          p = std::find(p, end_, '\n');
+          break;
+        }
+        const char* const word = p;
+        while (p != end_ && *p != '\n' && !IsBlank(*p)) ++p;
+        if (num_columns_ < kMaxColumns) columns_[num_columns_] = {word, size_t(p - word)};
+        ++num_columns_;
+      }
+      if (p != end_) ++p;
+      pos_ = p;
+      if (num_columns_ > 0) return true;
+    }
+    return false;
+  }
+
+  // The usage's word for a column, so that messages name what the format names.
+  std::string ColumnName(size_t column) const {
+    std::string_view rest = usage_;
+    for (size_t k = 0; k < column; ++k) rest.remove_prefix(rest.find(' ') + 1);
+    return std::string(rest.substr(0, rest.find(' ')));
+  }
+
+  bool FailColumn(size_t column, const std::string& expected) {
+    return Fail(ColumnName(column) + " is " + Quote(columns_[column]) + ", expected " + expected);
+  }
+
+  bool CheckColumns(size_t expected) {
+    if (num_columns_ == expected) return true;
+    return Fail(std::to_string(num_columns_) + (num_columns_ == 1 ? " column" : " columns") +
+                ", expected " + std::to_string(expected) + " (" + std::string(usage_) + ")");
+  }
+
+  bool Number(size_t column, double* value) {
+    if (ParseNumber(columns_[column], value)) return true;
+    return FailColumn(column, "a finite number");
+  }
+
+  bool PositiveNumber(size_t column, double* value) {
+    if (!Number(column, value)) return false;
+    return *value > 0 || FailColumn(column, "a positive number");
+  }
+
+  bool Integer(size_t column, int min, int* value) {
+    if (ParseInteger(columns_[column], min, value)) return true;
+    return FailColumn(column, "an integer from " + std::to_string(min) + " to " +
+                                  std::to_string(std::numeric_limits<int>::max()));
+  }
+
+  // The columns column, column + 1, ... as a vector.
+  template <int kSize>
+  bool Vector(size_t column, Eigen::Matrix<double, kSize, 1>* value) {
+    for (int k = 0; k < kSize; ++k) {
+      if (!Number(column + k, &(*value)[k])) return false;
+    }
+    return true;
+  }
+
+  template <int kSize>
+  bool UnitVector(size_t column, const char* what, Eigen::Matrix<double, kSize, 1>* value) {
+    if (!Vector(column, value)) return false;
+    const double norm = value->norm();
+    if (!(std::abs(norm - 1.0) <= kMaxNormError)) {
+      char text[32];
+      std::snprintf(text, sizeof(text), "%.6g", norm);
+      return Fail("the " + std::string(what) + " has norm " + text + ", expected 1 within 0.001");
+    }
+    // What is of unit length but for rounding stays as it is, so that written files read back
+    // exactly.
+    if (std::abs(norm - 1.0) > 1e-14) *value /= norm;
+    return true;
+  }
+
+  bool Direction(std::optional<Eigen::Vector3d>* value) {
+    Eigen::Vector3d v;
+    if (!UnitVector(1, "direction", &v)) return false;
+    *value = v;
+    return true;
+  }
+
+  bool Positive(std::optional<double>* value) {
+    double number;
+    if (!PositiveNumber(1, &number)) return false;
+    *value = number;
+    return true;
+  }
+
+  bool SigmaDeg(std::optional<double>* radians) {
+    double degrees;
+    if (!PositiveNumber(1, &degrees)) return false;
+    // The smallest doubles become zero in radians.
+    if (!(DegToRad(degrees) > 0)) return FailColumn(1, "a positive number");
+    *radians = DegToRad(degrees);
+    return true;
+  }
+
+  bool RotationAndVector(size_t column, Pose* pose) {
+    Eigen::Vector4d q;
+    Eigen::Vector3d t;
+    if (!UnitVector(column, "quaternion", &q) || !Vector(column + 4, &t)) return false;
+    *pose = Pose::FromQuaternion(Eigen::Quaterniond(q[0], q[1], q[2], q[3]), t);
+    return true;
+  }
+
+  bool Format() {
+    if (columns_[1] == "rigmatch" && columns_[2] == "1") return true;
+    return Fail("format " + Quote(columns_[1]) + " version " + Quote(columns_[2]) +
+                ", expected 'format rigmatch 1', the version that is read here");
+  }
+
+  bool Camera() {
+    int index;
+    if (!Integer(1, 0, &index)) return false;
+    if (columns_[2] != "pinhole") {
+      return Fail("camera model " + Quote(columns_[2]) + ", expected 'pinhole'");
+    }
+    DeclaredCamera declared;
+    declared.line = line_;
+    PinholeCamera& c = declared.camera.intrinsics;
+    Pose body_from_camera;
+    if (!PositiveNumber(3, &c.fx) || !PositiveNumber(4, &c.fy) || !Number(5, &c.cx) ||
+        !Number(6, &c.cy) || !Integer(7, 1, &c.width) || !Integer(8, 1, &c.height) ||
+        !RotationAndVector(9, &body_from_camera)) {
+      return false;
+    }
+    declared.camera.Q = body_from_camera.R;
+    declared.camera.s = body_from_camera.t;
+    const auto [known, is_new] = cameras_.emplace(index, declared);
+    if (is_new) return true;
+    return Fail("camera " + std::to_string(index) + " for the second time, expected once (line " +
+                std::to_string(known->second.line) + ")");
+  }
+
+  bool Time() {
+    double t1, t2;
+    if (!Number(1, &t1) || !Number(2, &t2)) return false;
+    pair_.time1 = t1;
+    pair_.time2 = t2;
+    return true;
+  }
+
+  bool Truth() {
+    Pose truth;
+    if (!RotationAndVector(1, &truth)) return false;
+    pair_.truth = truth;
+    return true;
+  }
+
+  bool Distance() {
+    double distance, sigma;
+    if (!Number(1, &distance)) return false;
+    if (distance < 0) return FailColumn(1, "a number >= 0");
+    if (!PositiveNumber(2, &sigma)) return false;
+    pair_.prior.distance = distance;
+    pair_.prior.distance_sigma = sigma;
+    return true;
+  }
+
+  // The name goes into tables and JSON, which must not break on it.
+  bool Sequence() {
+    const std::string_view name = columns_[1];
+    if (std::any_of(name.begin(), name.end(), IsControl) || !IsUtf8(name)) {
+      return FailColumn(1, "a name in UTF-8 without control characters");
+    }
+    pair_.sequence = std::string(name);
+    return true;
+  }
+
+  bool HeaderLine(KeywordId id) {
+    MotionPrior& prior = pair_.prior;
+    switch (id) {
+      case kFormat:
+        return Format();
+      case kCamera:
+        return Camera();
+      case kTime:
+        return Time();
+      case kTruth:
+        return Truth();
+      case kGravity1:
+        return Direction(&prior.gravity1);
+      case kGravity2:
+        return Direction(&prior.gravity2);
+      case kGravitySigma:
+        return SigmaDeg(&prior.gravity_sigma);
+      case kAxis:
+        return Direction(&prior.axis);
+      case kAxisSigma:
+        return SigmaDeg(&prior.axis_sigma);
+      case kNormal:
+        return Direction(&prior.normal);
+      case kNormalSigma:
+        return SigmaDeg(&prior.normal_sigma);
+      case kDistance:
+        return Distance();
+      case kNoise:
+        return Positive(&pair_.noise_px);
+      case kSequence:
+        return Sequence();
+      case kMatches:
+        return Integer(1, 0, &num_matches_);
+      case kNumKeywords:
+        break;
+    }
+    return false;
+  }
+
+  bool ParseHeader() {
+    std::array<int64_t, kNumKeywords> seen{};  // line of each keyword
+    while (NextLine()) {
+      const int id = FindKeyword(columns_[0]);
+      if (id < 0) {
+        if (seen[kFormat] == 0) {
+          return Fail(Quote(columns_[0]) + ", expected a match file with a line '" +
+                      std::string(kKeywords[kFormat].usage) + "'");
+        }
+        std::string names;
+        for (const Keyword& keyword : kKeywords) {
+          names += (names.empty() ? "" : ", ") + std::string(keyword.name);
+        }
+        return Fail("unknown keyword " + Quote(columns_[0]) + ", expected one of " + names);
+      }
+      const Keyword& keyword = kKeywords[id];
+      if (seen[id] > 0 && id != kCamera) {
+        return Fail("'" + std::string(keyword.name) +
+                    "' for the second time, expected once (line " + std::to_string(seen[id]) + ")");
+      }
+      seen[id] = line_;
+      usage_ = keyword.usage;
+      if (id == kMatches && seen[kFormat] == 0) {
+        return Fail("no 'format' line before 'matches', expected '" +
+                    std::string(kKeywords[kFormat].usage) + "'");
+      }
+      if (!CheckColumns(keyword.columns) || !HeaderLine(static_cast<KeywordId>(id))) return false;
+      if (id == kMatches) return true;
+    }
+    if (seen[kFormat] == 0) {
+      return Fail("the file ends without a 'format' line, expected '" +
+                  std::string(kKeywords[kFormat].usage) + "'");
+    }
+    return Fail("the file ends without a 'matches' line, expected 'matches N' and N rows");
+  }
+
+  bool FinishRig() {
+    if (cameras_.empty()) {
+      return Fail("no 'camera' line before 'matches', expected one a camera (" +
+                  std::string(kKeywords[kCamera].usage) + ")");
+    }
+    for (const auto& [index, declared] : cameras_) {
+      if (index != pair_.rig.size()) {
+        line_ = declared.line;
+        return Fail("camera " + std::to_string(index) + " without a camera " +
+                    std::to_string(pair_.rig.size()) +
+                    ", expected cameras numbered 0, 1, ... without a gap");
+      }
+      pair_.rig.cameras.push_back(declared.camera);
+    }
+    return true;
+  }
+
+  bool CameraOfRow(size_t column, int* camera) {
+    if (!Integer(column, 0, camera)) return false;
+    if (*camera < pair_.rig.size()) return true;
+    return FailColumn(column,
+                      "a declared camera (0 to " + std::to_string(pair_.rig.size() - 1) + ")");
+  }
+
+  // Takes the next line if it is a plain row, as nearly all lines are, without splitting it
+  // first: that is a third faster. Leaves everything else, valid or not, to the general way.
+  bool TakePlainRow(Match* m) {
+    const char* p = pos_;
+    const auto column = [&](auto* value) {
+      while (p != end_ && IsBlank(*p)) ++p;
+      const auto [stop, status] = std::from_chars(p, end_, *value);
+      p = stop;
+      return status == std::errc() && (p == end_ || IsBlank(*p) || *p == '\n');
+    };
+    if (!column(&m->camera1) || !column(&m->pixel1[0]) || !column(&m->pixel1[1]) ||
+        !column(&m->camera2) || !column(&m->pixel2[0]) || !column(&m->pixel2[1]) ||
+        !column(&m->score)) {
+      return false;
+    }
+    while (p != end_ && IsBlank(*p)) ++p;
+    if (p != end_ && *p != '\n') return false;
+    const int num_cameras = pair_.rig.size();
+    if (m->camera1 < 0 || m->camera1 >= num_cameras || m->camera2 < 0 ||
+        m->camera2 >= num_cameras || !m->pixel1.allFinite() || !m->pixel2.allFinite() ||
+        !std::isfinite(m->score)) {
+      return false;
+    }
+    pos_ = p == end_ ? p : p + 1;
+    ++line_;
+    return true;
+  }
+
+  bool ParseRows() {
+    usage_ = kRowUsage;
+    // N is only believed as far as the text could hold it.
+    const size_t num_rows = static_cast<size_t>(num_matches_);
+    std::vector<Match>& matches = pair_.matches;
+    matches.reserve(std::min(num_rows, static_cast<size_t>(end_ - pos_) / kMinRowBytes + 1));
+    for (;;) {
+      Match m;
+      while (matches.size() < num_rows && TakePlainRow(&m)) matches.push_back(m);
+      if (!NextLine()) break;
+      if (FindKeyword(columns_[0]) >= 0) {
+        return Fail(Quote(columns_[0]) + " after 'matches', expected header lines before it");
+      }
+      if (matches.size() == num_rows) {
+        return Fail("more rows than 'matches " + std::to_string(num_rows) +
+                    "' announces, expected the end of the file");
+      }
+      if (!CheckColumns(kRowColumns) || !CameraOfRow(0, &m.camera1) || !Vector(1, &m.pixel1) ||
+          !CameraOfRow(3, &m.camera2) || !Vector(4, &m.pixel2) || !Number(6, &m.score)) {
+        return false;
+      }
+      matches.push_back(m);
+    }
+    if (matches.size() == num_rows) return true;
+    return Fail("the file ends after " + std::to_string(matches.size()) + " rows, expected " +
+                std::to_string(num_rows));
+  }
+
+  const char* pos_;
+  const char* const end_;
+  const std::string& name_;
+  std::string* const error_;
+
+  int64_t line_ = 0;  // from 1
+  std::string_view usage_;
+  std::array<std::string_view, kMaxColumns> columns_;
+  size_t num_columns_ = 0;  // may exceed kMaxColumns; the surplus is not kept
+
+  FramePair pair_;
+  std::map<int, DeclaredCamera> cameras_;
+  int num_matches_ = 0;
+};
+
+// Text of a match file, line by line.
+class Formatter {
+ public:
+  explicit Formatter(size_t num_bytes) { text_.reserve(num_bytes); }
+
+  Formatter& Word(std::string_view word) {
+    if (!text_.empty() && text_.back() != '\n') text_ += ' ';
+    text_ += word;
+    return *this;
+  }
+
+  template <typename Value>
+  Formatter& Number(Value value) {
+    std::array<char, 32> buffer;  // the shortest form of a double has at most 24 characters
+    const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+    return Word({buffer.data(), size_t(result.ptr - buffer.data())});
+  }
+
+  template <int kSize>
+  Formatter& Vector(const Eigen::Matrix<double, kSize, 1>& v) {
+    for (int k = 0; k < kSize; ++k) Number(v[k]);
+    return *this;
+  }
+
+  Formatter& Quaternion(const Eigen::Matrix3d& R) {
+    Pose pose;
+    pose.R = R;
+    const Eigen::Quaterniond q = pose.Quaternion();
+    return Number(q.w()).Number(q.x()).Number(q.y()).Number(q.z());
+  }
+
+  // Writes degrees. Multiplying back and forth by pi/180 loses an ulp now and then, so look for
+  // the plainest degrees that read back as the same radians. About a tenth of all doubles are no
+  // double's radians; those move by one ulp.
+  Formatter& SigmaDeg(double radians) {
+    const double degrees = RadToDeg(radians);
+    const auto is_exact = [radians](double d) { return DegToRad(d) == radians; };
+    std::array<char, 64> buffer;
+    for (int digits = 1; digits <= 15; ++digits) {
+      const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), degrees,
+                                        std::chars_format::general, digits);
+      const std::string_view word(buffer.data(), result.ptr - buffer.data());
+      double rounded;
+      if (ParseNumber(word, &rounded) && is_exact(rounded)) return Number(rounded);
+    }
+    const double inf = std::numeric_limits<double>::infinity();
+    for (double below = degrees, above = degrees, k = 0; k < 4; ++k) {
+      if (is_exact(below)) return Number(below);
+      if (is_exact(above)) return Number(above);
+      below = std::nextafter(below, -inf);
+      above = std::nextafter(above, inf);
+    }
+    return Number(degrees);
+  }
+
+  void EndLine() { text_ += '\n'; }
+
+  std::string Take() { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, CloseFile>;
+
+// A buffer that is not cleared before it is filled.
+struct Buffer {
+  explicit Buffer(size_t num_bytes) : data(new char[num_bytes]), capacity(num_bytes) {}
+
+  std::unique_ptr<char[]> data;
+  size_t capacity;
+  size_t size = 0;
+};
+
+bool ReadWholeFile(const std::string& path, Buffer* text, std::string* error) {
+  const File file(std::fopen(path.c_str(), "rb"));
+  if (file == nullptr) {
+    *error = PrintablePath(path) + ": cannot be opened: " + SystemMessage(errno);
+    return false;
+  }
+  // The size is a hint that saves copies: pipes have none, and files may grow meanwhile.
+  std::error_code no_size;
+  const uintmax_t size = std::filesystem::file_size(path, no_size);
+  *text = Buffer(no_size ? size_t{1} << 16 : static_cast<size_t>(size) + 1);
+  for (;;) {
+    const size_t wanted = text->capacity - text->size;
+    const size_t count = std::fread(text->data.get() + text->size, 1, wanted, file.get());
+    text->size += count;
+    if (count < wanted) break;
+    Buffer larger(2 * text->capacity);
+    std::memcpy(larger.data.get(), text->data.get(), text->size);
+    larger.size = text->size;
+    *text = std::move(larger);
+  }
+  if (std::ferror(file.get())) {
+    *error = PrintablePath(path) + ": cannot be read: " + SystemMessage(errno);
+    return false;
+  }
+  return true;
+}
+
+// Creates a file that did not exist, named after `path`. Its name does not end in ".matches", so
+// that a left-over is never read. Null with errno set if that fails.
+std::FILE* CreateTemporary(const std::string& path, std::string* temporary) {
+  constexpr int kMaxTries = 100;
+  for (int k = 0; k < kMaxTries; ++k) {
+    *temporary = path + ".tmp" + std::to_string(k);
+    std::FILE* const file = std::fopen(temporary->c_str(), "wbx");
+    if (file != nullptr || errno != EEXIST) return file;
+  }
+  return nullptr;
+}
+
+bool WriteWholeFile(const std::string& path, const std::string& text, std::string* error) {
+  const auto fail = [&](const char* what, int error_number) {
+    *error =
+        PrintablePath(path) + ": cannot be written: " + what + ": " + SystemMessage(error_number);
+    return false;
+  };
+  std::string temporary;
+  std::FILE* const file = CreateTemporary(path, &temporary);
+  if (file == nullptr) return fail("no temporary file beside it", errno);
+  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  int error_number = errno;
+  // A full disk may show only now, when the buffer is flushed.
+  const bool closed = std::fclose(file) == 0;
+  if (written && !closed) error_number = errno;
+  if (!written || !closed) {
+    std::remove(temporary.c_str());
+    return fail("the disk or the device refused it", error_number);
+  }
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
+    error_number = errno;
+    std::remove(temporary.c_str());
+    return fail("the temporary file cannot take its place", error_number);
+  }
+  return true;
+}
+
+// Appends the match files of a directory.
+void ListDirectory(const std::string& directory, std::vector<std::string>* paths,
+                   std::vector<std::string>* errors) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> names;
+  std::error_code status;
+  fs::directory_iterator entry(directory, status);
+  for (; !status && entry != fs::directory_iterator(); entry.increment(status)) {
+    std::string name = entry->path().filename().string();
+    std::error_code ignored;
+    if (name.size() > kSuffix.size() &&
+        std::string_view(name).substr(name.size() - kSuffix.size()) == kSuffix &&
+        !entry->is_directory(ignored)) {
+      names.push_back(std::move(name));
+    }
+  }
+  if (status) {
+    errors->push_back(PrintablePath(directory) + ": cannot be listed: " + status.message());
+    return;
+  }
+  if (names.empty()) {
+    errors->push_back(PrintablePath(directory) + ": no " + std::string(kSuffix) +
+                      " files in this directory");
+    return;
+  }
+  std::sort(names.begin(), names.end());
+  for (const std::string& name : names) paths->push_back((fs::path(directory) / name).string());
+}
+
+}  // namespace
+
+bool ParseMatches(std::string_view text, const std::string& name, FramePair* pair,
+                  std::string* error) {
+  return Parser(text, name, error).Parse(pair);
+}
+
+bool ReadMatchFile(const std::string& path, FramePair* pair, std::string* error) {
+  Buffer text(0);
+  return ReadWholeFile(path, &text, error) &&
+         ParseMatches({text.data.get(), text.size}, path, pair, error);
+}
+
+std::string FormatMatches(const FramePair& pair) {
+  constexpr size_t kHeaderBytes = 4096;
+  constexpr size_t kUsualRowBytes = 100;
+  Formatter f(kHeaderBytes + kUsualRowBytes * pair.matches.size());
+  const auto direction = [&f](KeywordId id, const std::optional<Eigen::Vector3d>& v) {
+    if (v) f.Word(kKeywords[id].name).Vector(*v).EndLine();
+  };
+  const auto sigma = [&f](KeywordId id, const std::optional<double>& radians) {
+    if (radians) f.Word(kKeywords[id].name).SigmaDeg(*radians).EndLine();
+  };
+
+  f.Word(kKeywords[kFormat].usage).EndLine();
+  for (int k = 0; k < pair.rig.size(); ++k) {
+    const RigCamera& camera = pair.rig.cameras[k];
+    const PinholeCamera& c = camera.intrinsics;
+    f.Word(kKeywords[kCamera].name).Number(k).Word("pinhole");
+    f.Number(c.fx).Number(c.fy).Number(c.cx).Number(c.cy).Number(c.width).Number(c.height);
+    f.Quaternion(camera.Q).Vector(camera.s).EndLine();
+  }
+  if (pair.time1 && pair.time2) {
+    f.Word(kKeywords[kTime].name).Number(*pair.time1).Number(*pair.time2).EndLine();
+  }
+  if (pair.truth) {
+    f.Word(kKeywords[kTruth].name).Quaternion(pair.truth->R).Vector(pair.truth->t).EndLine();
+  }
+  const MotionPrior& prior = pair.prior;
+  direction(kGravity1, prior.gravity1);
+  direction(kGravity2, prior.gravity2);
+  sigma(kGravitySigma, prior.gravity_sigma);
+  direction(kAxis, prior.axis);
+  sigma(kAxisSigma, prior.axis_sigma);
+  direction(kNormal, prior.normal);
+  sigma(kNormalSigma, prior.normal_sigma);
+  if (prior.distance) {
+    f.Word(kKeywords[kDistance].name).Number(*prior.distance).Number(prior.distance_sigma);
+    f.EndLine();
+  }
+  if (pair.noise_px) f.Word(kKeywords[kNoise].name).Number(*pair.noise_px).EndLine();
+  if (!pair.sequence.empty()) f.Word(kKeywords[kSequence].name).Word(pair.sequence).EndLine();
+  f.Word(kKeywords[kMatches].name).Number(pair.matches.size()).EndLine();
+  for (const Match& m : pair.matches) {
+    f.Number(m.camera1).Vector(m.pixel1).Number(m.camera2).Vector(m.pixel2).Number(m.score);
+    f.EndLine();
+  }
+  return f.Take();
+}
+
+bool WriteMatchFile(const std::string& path, const FramePair& pair, std::string* error) {
+  const std::string text = FormatMatches(pair);
+  // Reading it back costs little and finds everything a reader would reject.
+  const std::string refusal = path + ": not written, it could not be read back";
+  FramePair read;
+  if (!ParseMatches(text, refusal, &read, error)) return false;
+  if (read.time1 != pair.time1 || read.time2 != pair.time2) {
+    *error = PrintablePath(refusal) + ": one time is missing, expected both or none";
+    return false;
+  }
+  if (read.sequence != pair.sequence) {
+    *error = PrintablePath(refusal) + ": sequence " + Quote(pair.sequence) +
+             ", expected a name without blanks";
+    return false;
+  }
+  return WriteWholeFile(path, text, error);
+}
+
+std::vector<std::string> ListMatchFiles(const std::string& comma_separated,
+                                        std::vector<std::string>* errors) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> paths;
+  for (size_t begin = 0; begin <= comma_separated.size();) {
+    const size_t comma = std::min(comma_separated.find(',', begin), comma_separated.size());
+    const std::string item = comma_separated.substr(begin, comma - begin);
+    begin = comma + 1;
+    if (item.empty()) continue;
+    std::error_code code;
+    const fs::file_status status = fs::status(item, code);
+    if (!fs::exists(status)) {
+      errors->push_back(PrintablePath(item) + ": cannot be opened: " + code.message());
+    } else if (fs::is_directory(status)) {
+      ListDirectory(item, &paths, errors);
+    } else {
+      paths.push_back(item);
+    }
+  }
+  return paths;
+}
+
+}  // namespace rigel

@@ -1,0 +1,184 @@
+#include "rigel/problems/synthetic.h"
+
+#include <cmath>
+
+#include "rigel/core/angles.h"
+#include "rigel/core/random.h"
+
+namespace rigel {
+namespace {
+
+// Draws of a point before giving up: a motion that leaves fewer than one point in a thousand in
+// view is out of view.
+constexpr int kMaxDraws = 1000;
+
+Rig MakeRig(int num_cameras, Random* random) {
+  const Eigen::Vector3d positions[4] = {
+      {-0.5, 0.0, 0.0}, {0.5, 0.0, 0.0}, {0.0, 0.4, 0.3}, {0.0, -0.4, 0.3}};
+  Rig rig;
+  for (int k = 0; k < num_cameras; ++k) {
+    RigCamera camera;
+    camera.intrinsics = {400.0, 400.0, 320.0, 240.0, 640, 480};
+    camera.Q = ExpSO3(0.1 * random->NormalVector3());
+    camera.s = positions[k] + 0.05 * random->NormalVector3();
+    rig.cameras.push_back(camera);
+  }
+  return rig;
+}
+
+Eigen::Vector2d Noise(double sigma, Random* random) {
+  const double x = random->Normal();
+  const double y = random->Normal();
+  return {sigma * x, sigma * y};
+}
+
+bool DrawMatch(const SceneOptions& options, const Rig& rig, const Pose& truth, bool inter,
+               int number, Random* random, Match* match) {
+  match->camera1 = number % options.num_cameras;
+  match->camera2 =
+      inter ? (match->camera1 + 1 + random->Index(options.num_cameras - 1)) % options.num_cameras
+            : match->camera1;
+  const RigCamera& camera1 = rig.cameras[match->camera1];
+  const RigCamera& camera2 = rig.cameras[match->camera2];
+  for (int draw = 0; draw < kMaxDraws; ++draw) {
+    const double u = random->Uniform(0.0, camera1.intrinsics.width);
+    const double v = random->Uniform(0.0, camera1.intrinsics.height);
+    const double depth = random->Uniform(5.0, 30.0);
+    match->pixel1 = {u, v};
+    const Eigen::Vector3d X1 =
+        camera1.Q * (depth * camera1.intrinsics.Normalize(match->pixel1)) + camera1.s;
+    const Eigen::Vector3d X2 = camera2.Q.transpose() * (truth * X1 - camera2.s);
+    if (!(X2.z() > 0.1)) continue;
+    match->pixel2 = camera2.intrinsics.Project(X2);
+    if (camera2.intrinsics.InImage(match->pixel2)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool ParseMotionPattern(std::string_view name, MotionPattern* pattern) {
+  if (name == "forward") {
+    *pattern = MotionPattern::kForward;
+  } else if (name == "random") {
+    *pattern = MotionPattern::kRandom;
+  } else if (name == "sideways") {
+    *pattern = MotionPattern::kSideways;
+  } else if (name == "planar") {
+    *pattern = MotionPattern::kPlanar;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+bool ParseRotationAxisPattern(std::string_view name, RotationAxisPattern* pattern) {
+  if (name == "y") {
+    *pattern = RotationAxisPattern::kY;
+  } else if (name == "random") {
+    *pattern = RotationAxisPattern::kRandom;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+bool SceneOptions::IsValid(std::string* error) const {
+  const auto in_unit = [](double x) { return x >= 0.0 && x <= 1.0; };
+  if (num_cameras < 1 || num_cameras > 4) {
+    *error = "num_cameras must be 1 to 4";
+  } else if (num_matches < 0) {
+    *error = "num_matches must not be negative";
+  } else if (!(noise_px >= 0.0) || !std::isfinite(noise_px)) {
+    *error = "noise_px must be finite and not negative";
+  } else if (!std::isfinite(rotation_deg)) {
+    *error = "rotation_deg must be finite";
+  } else if (!in_unit(inter_share) || !in_unit(outlier_share)) {
+    *error = "inter_share and outlier_share must lie in [0, 1]";
+  } else if (inter_share > 0.0 && num_cameras < 2) {
+    *error = "inter_share needs two cameras";
+  } else if (motion == MotionPattern::kPlanar && rotation_axis != RotationAxisPattern::kY) {
+    *error = "planar motion turns about y: rotation_axis=random contradicts it";
+  } else {
+    return true;
+  }
+  return false;
+}
+
+bool MakeScenePair(const SceneOptions& options, int index, FramePair* pair, std::string* error) {
+  // The motion has a stream of its own, so that it does not change with the number of matches.
+  Random random = Random::Stream(options.seed, 2 * static_cast<uint64_t>(index) + 1);
+  const Eigen::Vector3d axis = options.rotation_axis == RotationAxisPattern::kY
+                                   ? Eigen::Vector3d::UnitY()
+                                   : random.UnitVector3();
+  Pose truth;
+  truth.R = ExpSO3(DegToRad(options.rotation_deg) * axis);
+  switch (options.motion) {
+    case MotionPattern::kForward:
+      truth.t = Eigen::Vector3d::UnitZ();
+      break;
+    case MotionPattern::kSideways:
+      truth.t = Eigen::Vector3d::UnitX();
+      break;
+    case MotionPattern::kRandom:
+      truth.t = random.UnitVector3();
+      break;
+    case MotionPattern::kPlanar: {
+      const double angle = random.Uniform(0.0, 2.0 * kPi);
+      truth.t = {std::sin(angle), 0.0, std::cos(angle)};
+      break;
+    }
+  }
+  if (!MakeScenePair(options, index, truth, pair, error)) return false;
+  pair->prior.axis = axis;
+  if (options.motion == MotionPattern::kPlanar) pair->prior.normal = Eigen::Vector3d::UnitY();
+  return true;
+}
+
+bool MakeScenePair(const SceneOptions& options, int index, const Pose& truth, FramePair* pair,
+                   std::string* error) {
+  if (!options.IsValid(error)) return false;
+  Random random = Random::Stream(options.seed, 2 * static_cast<uint64_t>(index));
+  FramePair result;
+  result.name = "pair " + std::to_string(index);
+  result.truth = truth;
+  if (options.noise_px > 0.0) result.noise_px = options.noise_px;
+  result.rig = MakeRig(options.num_cameras, &random);
+  result.prior.gravity1 = Eigen::Vector3d::UnitY();
+  result.prior.gravity2 = truth.R * *result.prior.gravity1;
+  const double angle = LogSO3(truth.R).norm();
+  result.prior.axis =
+      angle > 1e-6 ? Eigen::Vector3d(LogSO3(truth.R) / angle) : Eigen::Vector3d::UnitY();
+
+  const int num_inter = static_cast<int>(std::lround(options.inter_share * options.num_matches));
+  const int num_outliers =
+      static_cast<int>(std::lround(options.outlier_share * options.num_matches));
+  result.matches.reserve(options.num_matches);
+  for (int k = 0; k < options.num_matches; ++k) {
+    Match match;
+    const bool inter = k >= options.num_matches - num_inter;
+    if (!DrawMatch(options, result.rig, truth, inter, k, &random, &match)) {
+      *error = "the motion leaves hardly any point of camera " + std::to_string(match.camera1) +
+               " in the view of camera " + std::to_string(match.camera2);
+      return false;
+    }
+    match.pixel1 += Noise(options.noise_px, &random);
+    match.pixel2 += Noise(options.noise_px, &random);
+    result.matches.push_back(match);
+  }
+  // Outliers among all matches alike: the first num_outliers of a random order.
+  std::vector<int> order(options.num_matches);
+  for (int k = 0; k < options.num_matches; ++k) order[k] = k;
+  for (int k = 0; k < num_outliers; ++k) {
+    std::swap(order[k], order[k + random.Index(options.num_matches - k)]);
+    Match& match = result.matches[order[k]];
+    const PinholeCamera& camera = result.rig.cameras[match.camera2].intrinsics;
+    const double u = random.Uniform(0.0, camera.width);
+    const double v = random.Uniform(0.0, camera.height);
+    match.pixel2 = {u, v};
+  }
+  *pair = result;
+  return true;
+}
+
+}  // namespace rigel

@@ -1,0 +1,185 @@
+#include "rigel/refine/estimate_motion.h"
+
+#include <chrono>
+
+#include "rigel/core/cheirality.h"
+#include "rigel/minimal/prepared_matches.h"
+#include "rigel/minimal/sampler.h"
+#include "rigel/refine/scale_search.h"
+#include "rigel/refine/small_engine.h"
+
+namespace rigel {
+namespace {
+
+// A hypothesis; equality tells RANSAC whether Admit() changed it.
+struct Hypothesis : Solution {
+  Hypothesis() = default;
+  Hypothesis(const Solution& solution) : Solution(solution) {}  // NOLINT: a plain wrapper
+  bool operator==(const Hypothesis& other) const { return R == other.R && t == other.t; }
+};
+
+// The solver concept of ransac.h for a frame pair and a solver of the catalogue.
+class FramePairSolver {
+ public:
+  using Model = Hypothesis;
+  using Solutions = rigel::Solutions;
+
+  FramePairSolver(const SolverInfo& solver, const GroupedMatches& matches,
+                  const Alignment& alignment, double threshold_px)
+      : solver_(solver),
+        matches_(matches),
+        prepared_(matches.rig(), matches.matches(), alignment),
+        sampler_(matches.groups(), matches.size()),
+        residuals_(matches, ResidualKind::kSampson),
+        engine_(residuals_),
+        threshold_px_(threshold_px) {
+    // Inter-camera matches determine the scale; intra-camera ones hardly do.
+    for (const MatchGroup& group : matches.groups()) {
+      if (group.camera1 != group.camera2) polar_ = false;
+    }
+  }
+
+  int num_data() const { return matches_.size(); }
+  int sample_size() const { return solver_.sample_size; }
+  bool Draw(Random* random, int* sample) const {
+    return sampler_.Draw(solver_.sample_size, random, sample);
+  }
+  int MinimalSolver(const int* sample, Solutions* solutions) const {
+    return solver_.solve(prepared_, sample, solutions);
+  }
+  double Score(const Model& model, double bound, int* inliers) const {
+    return matches_.Score(model, threshold_px_, bound, inliers);
+  }
+
+  // Epipolar errors do not see the sign of t where scale is not observable: the inliers' depths do.
+  bool Admit(Model* model) const {
+    matches_.SquaredErrors(*model, &squared_errors_);
+    int votes = 0;
+    for (int k = 0; k < matches_.size(); ++k) {
+      if (squared_errors_[k] < threshold_px_ * threshold_px_) {
+        votes += CheiralityVote(*model, prepared_.rays(k));
+      }
+    }
+    if (votes < 0) model->t = -model->t;
+    return model->AllFinite();
+  }
+
+  bool LocalOptimize(Model* model) const {
+    SmallEngineOptions options;
+    options.loss_scale = threshold_px_;
+    options.polar = polar_ || !model->has_scale;
+    if (options.polar) ChooseTranslationScale(matches_, threshold_px_, model);
+    return engine_.Minimize(options, model);
+  }
+
+ private:
+  const SolverInfo& solver_;
+  const GroupedMatches& matches_;
+  PreparedMatches prepared_;
+  Sampler sampler_;
+  EpipolarResiduals residuals_;
+  mutable SmallEngine engine_;
+  double threshold_px_;
+  bool polar_ = true;
+  mutable std::vector<double> squared_errors_;
+};
+
+double MillisecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
+}
+
+MotionEstimate Refused(EstimateStatus status, const std::string& message) {
+  MotionEstimate estimate;
+  estimate.status = status;
+  estimate.message = message;
+  return estimate;
+}
+
+}  // namespace
+
+const char* EstimateStatusName(EstimateStatus status) {
+  switch (status) {
+    case EstimateStatus::kNotRun:
+      return "not run";
+    case EstimateStatus::kSuccess:
+      return "ok";
+    case EstimateStatus::kInvalidInput:
+      return "invalid input";
+    case EstimateStatus::kTooFewMatches:
+      return "too few matches";
+    case EstimateStatus::kNoSolution:
+      return "no solution";
+    case EstimateStatus::kNotRefined:
+      return "not refined";
+  }
+  return "unknown";
+}
+
+bool EstimateOptions::IsValid(std::string* error) const {
+  const SolverInfo* info = FindSolver(solver);
+  if (info == nullptr) {
+    *error = "there is no solver '" + solver + "'; expected one of " + SolverNames();
+    return false;
+  }
+  RefineOptions refined = refine;
+  refined.prior_kind = info->prior;
+  return ransac.IsValid(error) && (!refine_motion || refined.IsValid(error));
+}
+
+MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& pair) {
+  std::string error;
+  if (!options.IsValid(&error) || !pair.IsValid(&error)) {
+    return Refused(EstimateStatus::kInvalidInput, error);
+  }
+  const SolverInfo& solver = *FindSolver(options.solver);
+  Alignment alignment;
+  if (!MakeAlignment(pair.prior, solver.prior, &alignment, &error)) {
+    return Refused(EstimateStatus::kInvalidInput, options.solver + ": " + error);
+  }
+  if (static_cast<int>(pair.matches.size()) < solver.sample_size) {
+    return Refused(EstimateStatus::kTooFewMatches,
+                   std::to_string(pair.matches.size()) + " matches, " + options.solver +
+                       " needs " + std::to_string(solver.sample_size));
+  }
+
+  MotionEstimate estimate;
+  const auto ransac_start = std::chrono::steady_clock::now();
+  const GroupedMatches matches(pair.rig, pair.matches);
+  const FramePairSolver problem(solver, matches, alignment, options.ransac.threshold_px);
+  Solutions solutions;
+  const RansacResult<Hypothesis> ransac = Ransac(problem, options.ransac, &solutions);
+  estimate.ransac_ms = MillisecondsSince(ransac_start);
+  estimate.iterations = ransac.iterations;
+  estimate.hypotheses = ransac.hypotheses;
+  if (!ransac.found) {
+    estimate.status = EstimateStatus::kNoSolution;
+    estimate.message = "no sample of the matches determines a motion";
+    return estimate;
+  }
+  estimate.raw = ransac.best_minimal;
+  estimate.pose = ransac.best;
+  estimate.num_inliers = ransac.num_inliers;
+  estimate.inlier_ratio = ransac.num_inliers / static_cast<double>(matches.size());
+  estimate.status = EstimateStatus::kSuccess;
+  estimate.message = "ok";
+  if (!options.refine_motion) return estimate;
+
+  const auto refine_start = std::chrono::steady_clock::now();
+  RefineOptions refine = options.refine;
+  refine.prior_kind = solver.prior;
+  refine.threshold_px = options.ransac.threshold_px;
+  estimate.refine = Refine(refine, matches, pair.prior, &estimate.pose);
+  estimate.refine_ms = MillisecondsSince(refine_start);
+  if (!estimate.refine.IsSolutionUsable()) {
+    estimate.status = EstimateStatus::kNotRefined;
+    estimate.message = "not refined: " + estimate.refine.message;
+    estimate.pose = ransac.best_minimal;
+    return estimate;
+  }
+  estimate.num_inliers = estimate.refine.num_inliers;
+  estimate.inlier_ratio = estimate.num_inliers / static_cast<double>(matches.size());
+  return estimate;
+}
+
+}  // namespace rigel

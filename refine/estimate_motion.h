@@ -1,0 +1,60 @@
+// The whole estimate of a frame pair in one call: RANSAC over a minimal solver, then Refine().
+#ifndef RIGEL_REFINE_ESTIMATE_MOTION_H_
+#define RIGEL_REFINE_ESTIMATE_MOTION_H_
+
+#include <string>
+
+#include "rigel/core/frame_pair.h"
+#include "rigel/minimal/catalogue.h"
+#include "rigel/minimal/ransac.h"
+#include "rigel/minimal/solutions.h"
+#include "rigel/refine/refine.h"
+
+namespace rigel {
+
+struct EstimateOptions {
+  std::string solver = "4pt-axis";  // a name of SolverCatalogue()
+  RansacOptions ransac;
+  bool refine_motion = true;
+  // The solver's prior replaces refine.prior_kind; refine.threshold_px is taken from ransac.
+  RefineOptions refine;
+
+  bool IsValid(std::string* error) const;
+};
+
+enum class EstimateStatus {
+  kNotRun,
+  kSuccess,
+  kInvalidInput,   // the options, the pair or its prior: see message
+  kTooFewMatches,  // fewer than the solver's sample
+  kNoSolution,     // no sample gave a motion
+  kNotRefined,     // RANSAC succeeded, the refinement did not: pose is the raw one
+};
+
+const char* EstimateStatusName(EstimateStatus status);
+
+struct MotionEstimate {
+  EstimateStatus status = EstimateStatus::kNotRun;
+  std::string message = "EstimateMotion was not called.";
+  Pose pose;  // the estimate: refined where that was asked for and done
+  Solution raw;  // the best-scoring minimal hypothesis of RANSAC, before any optimization
+  int num_inliers = 0;
+  double inlier_ratio = 0.0;
+  int iterations = 0;
+  int64_t hypotheses = 0;
+  double ransac_ms = 0.0;
+  double refine_ms = 0.0;
+  RefineSummary refine;
+
+  bool HasMotion() const {
+    return status == EstimateStatus::kSuccess || status == EstimateStatus::kNotRefined;
+  }
+};
+
+// Never throws, exits or logs on what `pair` or `options` hold. Thread-safe; the same input and seed
+// give the same result.
+MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& pair);
+
+}  // namespace rigel
+
+#endif  // RIGEL_REFINE_ESTIMATE_MOTION_H_

@@ -1,0 +1,54 @@
+#include "rigel/refine/prior_residuals.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rigel {
+
+PriorResiduals::PriorResiduals(const MotionPrior& prior, PriorKind kind, const Pose& start) {
+  if (!HasPrior(prior, kind)) return;
+  const double angle = std::max(LogSO3(start.R).norm(), kMinAxisAngle);
+  const double chord = 2.0 * std::sin(0.5 * std::min(angle, 3.0));
+  switch (kind) {
+    case PriorKind::kNone:
+      return;
+    case PriorKind::kVertical:
+      if (!prior.gravity_sigma) return;
+      from_ = *prior.gravity1;
+      to_ = *prior.gravity2;
+      weight_ = 1.0 / (std::sqrt(2.0) * *prior.gravity_sigma);
+      break;
+    case PriorKind::kAxis:
+      if (!prior.axis_sigma) return;
+      from_ = to_ = *prior.axis;
+      weight_ = 1.0 / (chord * *prior.axis_sigma);
+      break;
+    case PriorKind::kPlanar:
+      if (!prior.normal_sigma) return;
+      from_ = to_ = *prior.normal;
+      weight_ = 1.0 / (chord * *prior.normal_sigma);
+      with_normal_ = start.t.norm() > 0;
+      if (with_normal_) translation_weight_ = 1.0 / (start.t.norm() * *prior.normal_sigma);
+      break;
+  }
+  across_ = TangentBasis(to_.normalized());
+  size_ = with_normal_ ? 3 : 2;
+}
+
+void PriorResiduals::Evaluate(const Pose& pose, Residuals* residuals, Jacobian* jacobian) const {
+  residuals->resize(size_);
+  if (jacobian != nullptr) jacobian->setZero(size_, 6);
+  if (size_ == 0) return;
+  const Eigen::Vector3d turned = pose.R * from_;
+  residuals->head<2>() = weight_ * across_.transpose() * (turned - to_);
+  // d(Exp(d) R from) = -[R from]x d.
+  if (jacobian != nullptr) {
+    jacobian->block<2, 3>(0, 0) = -weight_ * across_.transpose() * Skew(turned);
+  }
+  if (with_normal_) {
+    (*residuals)(2) = translation_weight_ * to_.dot(pose.t);
+    if (jacobian != nullptr) jacobian->block<1, 3>(2, 3) = translation_weight_ * to_.transpose();
+  }
+}
+
+}  // namespace rigel

@@ -1,0 +1,506 @@
+#include "rigel/refine/refine.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <deque>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include <ceres/ceres.h>
+
+#include "rigel/core/angles.h"
+#include "rigel/core/cheirality.h"
+#include "rigel/core/frame_pair.h"
+#include "rigel/core/rays.h"
+#include "rigel/minimal/alignment.h"
+#include "rigel/refine/motion_parameterization.h"
+#include "rigel/refine/prior_residuals.h"
+#include "rigel/refine/scale_search.h"
+
+namespace rigel {
+namespace {
+
+template <class Enum, size_t N>
+const char* NameOf(const std::array<std::pair<Enum, const char*>, N>& names, Enum value) {
+  for (const auto& entry : names) {
+    if (entry.first == value) return entry.second;
+  }
+  return "unknown";
+}
+
+template <class Enum, size_t N>
+bool ValueOf(const std::array<std::pair<Enum, const char*>, N>& names, std::string_view name,
+             Enum* value) {
+  for (const auto& entry : names) {
+    if (name == entry.second) {
+      *value = entry.first;
+      return true;
+    }
+  }
+  return false;
+}
+
+constexpr std::array<std::pair<RefineForm, const char*>, 4> kFormNames = {
+    {{RefineForm::kFull, "full"},
+     {RefineForm::kPrior, "prior"},
+     {RefineForm::kDepths, "depths"},
+     {RefineForm::kPriorDepths, "prior-depths"}}};
+
+constexpr std::array<std::pair<ResidualKind, const char*>, 3> kResidualNames = {
+    {{ResidualKind::kSampson, "sampson"},
+     {ResidualKind::kAngular, "angular"},
+     {ResidualKind::kAlgebraic, "algebraic"}}};
+
+constexpr std::array<std::pair<Termination, const char*>, 5> kTerminationNames = {
+    {{Termination::kNotRun, "not run"},
+     {Termination::kConverged, "converged"},
+     {Termination::kIterationLimit, "iteration limit"},
+     {Termination::kDegenerate, "degenerate"},
+     {Termination::kFailure, "failure"}}};
+
+// What all residual blocks share at one point: the motion and the linearized camera pairs.
+class SharedEvaluation : public ceres::EvaluationCallback {
+ public:
+  SharedEvaluation(const MotionParameterization& parameterization,
+                   const EpipolarResiduals& residuals, const double* parameters)
+      : parameterization_(parameterization), residuals_(residuals), parameters_(parameters) {}
+
+  void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override {
+    if (!new_evaluation_point && (has_jacobians_ || !evaluate_jacobians)) return;
+    parameterization_.Evaluate(parameters_, &pose, &basis);
+    residuals_.Linearize(pose, evaluate_jacobians ? &basis : nullptr, &groups);
+    has_jacobians_ = evaluate_jacobians;
+  }
+
+  Pose pose;
+  MotionBasis basis;
+  std::vector<GroupLinearization> groups;
+
+ private:
+  const MotionParameterization& parameterization_;
+  const EpipolarResiduals& residuals_;
+  const double* parameters_;
+  bool has_jacobians_ = false;
+};
+
+class MatchCost : public ceres::CostFunction {
+ public:
+  MatchCost(const EpipolarResiduals& residuals, const SharedEvaluation& shared, int k, int size)
+      : residuals_(&residuals), shared_(&shared), k_(k), size_(size) {
+    set_num_residuals(1);
+    mutable_parameter_block_sizes()->push_back(size);
+  }
+  bool Evaluate(double const* const*, double* r, double** jacobians) const override {
+    double* jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
+    r[0] = residuals_->Evaluate(shared_->groups, k_, size_, jacobian);
+    return true;
+  }
+
+ private:
+  const EpipolarResiduals* residuals_;
+  const SharedEvaluation* shared_;
+  int k_;
+  int size_;
+};
+
+class PriorCost : public ceres::CostFunction {
+ public:
+  PriorCost(const PriorResiduals& prior, const SharedEvaluation& shared, double unit, int size)
+      : prior_(&prior), shared_(&shared), unit_(unit) {
+    set_num_residuals(prior.size());
+    mutable_parameter_block_sizes()->push_back(size);
+  }
+  bool Evaluate(double const* const*, double* r, double** jacobians) const override {
+    PriorResiduals::Residuals values;
+    PriorResiduals::Jacobian by_motion;
+    prior_->Evaluate(shared_->pose, &values, &by_motion);
+    for (int i = 0; i < prior_->size(); ++i) r[i] = unit_ * values(i);
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      const int n = static_cast<int>(shared_->basis.cols());
+      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> out(
+          jacobians[0], prior_->size(), n);
+      out = unit_ * by_motion * shared_->basis;
+    }
+    return true;
+  }
+
+ private:
+  const PriorResiduals* prior_;
+  const SharedEvaluation* shared_;
+  double unit_;  // the image noise: residuals of matches are in pixels, the prior's in sigmas
+};
+
+double Median(std::vector<double>* values) {
+  if (values->empty()) return -1.0;
+  const auto middle = values->begin() + static_cast<long>(values->size() / 2);
+  std::nth_element(values->begin(), middle, values->end());
+  return *middle;
+}
+
+class Refiner {
+ public:
+  Refiner(const RefineOptions& options, const GroupedMatches& matches, const MotionPrior& prior)
+      : options_(options),
+        matches_(matches),
+        prior_(prior),
+        residuals_(matches, options.residual) {}
+
+  RefineSummary Run(Pose* pose);
+
+ private:
+  bool SelectInliers(const Pose& pose);
+  void EstimateNoise();
+  Matrix6d Information(const Pose& pose) const;
+  bool ScaleIsFree(const Pose& pose) const;
+  bool ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotation,
+                   TranslationForm* translation) const;
+  bool ChooseReference(const Pose& pose, RayPair* reference) const;
+  bool Solve(bool scale_free, Pose* pose);
+  bool Iterate(Pose* pose);
+  bool SignIsWrong(const Pose& pose) const;
+  void FillUncertainty(const Pose& pose);
+  bool Fail(Termination termination, const std::string& message);
+
+  const RefineOptions& options_;
+  const GroupedMatches& matches_;
+  const MotionPrior& prior_;
+  const EpipolarResiduals residuals_;
+  Alignment alignment_;
+  std::vector<double> squared_errors_;
+  std::vector<char> mask_;  // grouped order
+  int num_inliers_ = 0;
+  double noise_px_ = 1.0;
+  bool scale_free_ = true;
+  RefineSummary summary_;
+};
+
+bool Refiner::Fail(Termination termination, const std::string& message) {
+  summary_.termination = termination;
+  summary_.message = message;
+  return false;
+}
+
+// True if the selection changed.
+bool Refiner::SelectInliers(const Pose& pose) {
+  matches_.SquaredErrors(pose, &squared_errors_);
+  const double t2 = options_.threshold_px * options_.threshold_px;
+  bool changed = mask_.size() != squared_errors_.size();
+  mask_.resize(squared_errors_.size());
+  num_inliers_ = 0;
+  for (size_t k = 0; k < mask_.size(); ++k) {
+    const char inlier = squared_errors_[k] < t2 ? 1 : 0;
+    changed = changed || inlier != mask_[k];
+    mask_[k] = inlier;
+    num_inliers_ += inlier;
+  }
+  return changed;
+}
+
+void Refiner::EstimateNoise() {
+  std::vector<double> errors;
+  errors.reserve(num_inliers_);
+  for (size_t k = 0; k < mask_.size(); ++k) {
+    if (mask_[k]) errors.push_back(std::sqrt(squared_errors_[k]));
+  }
+  summary_.median_residual_px = Median(&errors);
+  // A floor keeps noise-free problems regular.
+  noise_px_ = std::max(options_.noise_px.value_or(1.4826 * summary_.median_residual_px), 1e-9);
+  summary_.noise_px = noise_px_;
+}
+
+Matrix6d Refiner::Information(const Pose& pose) const {
+  Matrix6d information = SampsonInformation(matches_, mask_, pose) / (noise_px_ * noise_px_);
+  if (options_.use_prior) {
+    const PriorResiduals prior(prior_, options_.prior_kind, pose);
+    PriorResiduals::Residuals r;
+    PriorResiduals::Jacobian J;
+    prior.Evaluate(pose, &r, &J);
+    information += J.transpose() * J;
+  }
+  return information;
+}
+
+bool Refiner::ScaleIsFree(const Pose& pose) const {
+  switch (options_.scale) {
+    case ScaleMode::kFree:
+      return true;
+    case ScaleMode::kFixed:
+      return false;
+    case ScaleMode::kAuto:
+      break;
+  }
+  return RelativeScaleSigma(Information(pose), pose) <= kScaleObservableRatio;
+}
+
+bool Refiner::ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotation,
+                          TranslationForm* translation) const {
+  const bool prior_exact =
+      options_.form == RefineForm::kPrior || options_.form == RefineForm::kPriorDepths;
+  const bool planar = prior_exact && options_.prior_kind == PriorKind::kPlanar;
+  *rotation = prior_exact ? RotationForm::kAngle : RotationForm::kFree;
+  const bool depths =
+      options_.form == RefineForm::kDepths || options_.form == RefineForm::kPriorDepths;
+  if (depths) {
+    *translation = planar ? (scale_free ? TranslationForm::kPlanarDepths
+                                        : TranslationForm::kPlanarDepth)
+                          : (scale_free ? TranslationForm::kDepths : TranslationForm::kDepth);
+  } else {
+    // At t = 0 there is no direction to move on a sphere.
+    const bool free = scale_free || !(pose.t.norm() > 0);
+    const TranslationForm held = options_.scale == ScaleMode::kFixed ? TranslationForm::kSphere
+                                                                     : TranslationForm::kPolar;
+    *translation = planar ? (free ? TranslationForm::kPlane : TranslationForm::kCircle)
+                          : (free ? TranslationForm::kFree : held);
+  }
+  return true;
+}
+
+// Among the inliers of less than the median error the one of largest parallax: its rays say most of
+// l1, l2, and taking it as exact hurts least.
+bool Refiner::ChooseReference(const Pose& pose, RayPair* reference) const {
+  double best = 1e-6;
+  bool found = false;
+  const double limit = std::max(summary_.median_residual_px, 1e-9);
+  for (int k = 0; k < matches_.size(); ++k) {
+    if (!mask_[k] || squared_errors_[k] > limit * limit) continue;
+    const RayPair rays = MakeRayPair(matches_.rig(), matches_.matches()[k]);
+    const double parallax = (pose.R * rays.ray1.x).cross(rays.ray2.x).norm();
+    if (parallax > best) {
+      best = parallax;
+      *reference = rays;
+      found = true;
+    }
+  }
+  return found;
+}
+
+bool Refiner::Solve(bool scale_free, Pose* pose) {
+  RotationForm rotation;
+  TranslationForm translation;
+  ChooseForms(*pose, scale_free, &rotation, &translation);
+  RayPair reference;
+  const bool depths =
+      options_.form == RefineForm::kDepths || options_.form == RefineForm::kPriorDepths;
+  if (depths && !ChooseReference(*pose, &reference)) {
+    return Fail(Termination::kDegenerate, "no match has the parallax that a reference needs");
+  }
+  MotionParameterization parameterization;
+  if (!parameterization.Set(rotation, translation, *pose, alignment_, reference)) {
+    return Fail(Termination::kDegenerate, "the start has no place in the parameterization");
+  }
+  const int size = parameterization.size();
+  if (num_inliers_ < size) {
+    return Fail(Termination::kDegenerate, std::to_string(num_inliers_) + " inliers for " +
+                                              std::to_string(size) + " free parameters");
+  }
+
+  std::array<double, 6> parameters = {0, 0, 0, 0, 0, 0};
+  SharedEvaluation shared(parameterization, residuals_, parameters.data());
+  const PriorResiduals prior =
+      options_.use_prior ? PriorResiduals(prior_, options_.prior_kind, *pose) : PriorResiduals();
+  std::deque<MatchCost> costs;
+  PriorCost prior_cost(prior, shared, noise_px_, size);
+  // The algebraic residual is in metres: a scale in pixels means nothing to it.
+  const std::unique_ptr<ceres::LossFunction> loss =
+      options_.residual == ResidualKind::kAlgebraic
+          ? nullptr
+          : MakeLoss(options_.loss, options_.loss_scale_sigmas * noise_px_);
+
+  ceres::Problem::Options problem_options;
+  problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  problem_options.disable_all_safety_checks = true;
+  problem_options.evaluation_callback = &shared;
+  ceres::Problem problem(problem_options);
+  for (int k = 0; k < matches_.size(); ++k) {
+    if (!mask_[k]) continue;
+    costs.emplace_back(residuals_, shared, k, size);
+    problem.AddResidualBlock(&costs.back(), loss.get(), parameters.data());
+  }
+  if (prior.size() > 0) problem.AddResidualBlock(&prior_cost, nullptr, parameters.data());
+
+  ceres::Solver::Options solver_options;
+  solver_options.linear_solver_type = ceres::DENSE_QR;
+  solver_options.logging_type = ceres::SILENT;
+  solver_options.minimizer_progress_to_stdout = false;
+  solver_options.num_threads = 1;
+  solver_options.max_num_iterations = options_.max_num_iterations;
+  solver_options.function_tolerance = 1e-10;
+  solver_options.parameter_tolerance = 1e-12;
+  solver_options.gradient_tolerance = 1e-14;
+  ceres::Solver::Summary ceres_summary;
+  ceres::Solve(solver_options, &problem, &ceres_summary);
+
+  Pose result;
+  parameterization.Evaluate(parameters.data(), &result, nullptr);
+  if (!ceres_summary.IsSolutionUsable() || !result.AllFinite()) {
+    return Fail(Termination::kDegenerate, "the least-squares solver found no usable solution");
+  }
+  if (summary_.initial_cost < 0) summary_.initial_cost = ceres_summary.initial_cost;
+  summary_.final_cost = ceres_summary.final_cost;
+  summary_.num_iterations += static_cast<int>(ceres_summary.iterations.size());
+  summary_.termination = ceres_summary.termination_type == ceres::NO_CONVERGENCE
+                             ? Termination::kIterationLimit
+                             : Termination::kConverged;
+  *pose = result;
+  return true;
+}
+
+// Selection of inliers and least squares in turn until the selection stays.
+bool Refiner::Iterate(Pose* pose) {
+  SelectInliers(*pose);
+  for (int round = 0; round < options_.max_rounds; ++round) {
+    EstimateNoise();
+    scale_free_ = ScaleIsFree(*pose);
+    if (!Solve(scale_free_, pose)) return false;
+    ++summary_.num_rounds;
+    if (!SelectInliers(*pose)) break;
+  }
+  EstimateNoise();
+  return true;
+}
+
+bool Refiner::SignIsWrong(const Pose& pose) const {
+  int votes = 0;
+  for (int k = 0; k < matches_.size(); ++k) {
+    if (!mask_[k]) continue;
+    votes += CheiralityVote(pose, MakeRayPair(matches_.rig(), matches_.matches()[k]));
+  }
+  return votes < 0;
+}
+
+void Refiner::FillUncertainty(const Pose& pose) {
+  const Matrix6d information = Information(pose);
+  summary_.relative_scale_sigma = RelativeScaleSigma(information, pose);
+  summary_.scale_observable = summary_.relative_scale_sigma <= kScaleObservableRatio;
+  Matrix6d covariance;
+  if (CovarianceOfBasis(information, FullBasis(pose, scale_free_), &covariance)) {
+    summary_.covariance = covariance;
+    summary_.rotation_sigma = RotationSigma(covariance);
+    summary_.direction_sigma = DirectionSigma(covariance, pose.t);
+    summary_.rotation_observable =
+        RadToDeg(summary_.rotation_sigma) <= kRotationObservableDeg;
+  }
+  summary_.parallax_px = ParallaxPercentilePx(matches_, mask_, pose);
+  summary_.translation_observable =
+      summary_.covariance.has_value() &&
+      RadToDeg(summary_.direction_sigma) <= kDirectionObservableDeg &&
+      summary_.parallax_px > kParallaxSigmas * noise_px_;
+  summary_.scale_observable = summary_.scale_observable && summary_.translation_observable;
+}
+
+RefineSummary Refiner::Run(Pose* pose) {
+  std::string error;
+  if (!options_.IsValid(&error)) {
+    Fail(Termination::kFailure, error);
+    return summary_;
+  }
+  const bool prior_exact =
+      options_.form == RefineForm::kPrior || options_.form == RefineForm::kPriorDepths;
+  if (prior_exact && !MakeAlignment(prior_, options_.prior_kind, &alignment_, &error)) {
+    Fail(Termination::kFailure, error);
+    return summary_;
+  }
+  if (!pose->AllFinite()) {
+    Fail(Termination::kFailure, "the start is not finite");
+    return summary_;
+  }
+  summary_.num_rounds = 0;
+  summary_.num_iterations = 0;
+  Pose result = *pose;
+  SelectInliers(result);
+  EstimateNoise();
+  if (options_.scale == ScaleMode::kAuto && !ScaleIsFree(result)) {
+    ChooseTranslationScale(matches_, options_.threshold_px, &result);
+  }
+  bool done = Iterate(&result);
+  // A flipped t is not a minimum: refine again from there.
+  if (done && SignIsWrong(result)) {
+    result.t = -result.t;
+    done = Iterate(&result);
+  }
+  // What is said of the scale must be said of the final motion.
+  if (done && ScaleIsFree(result) != scale_free_) done = Iterate(&result);
+  if (!done) return summary_;
+
+  FillUncertainty(result);
+  summary_.num_inliers = num_inliers_;
+  summary_.inliers.assign(mask_.size(), 0);
+  for (int k = 0; k < matches_.size(); ++k) summary_.inliers[matches_.original(k)] = mask_[k];
+  summary_.message = TerminationName(summary_.termination);
+  *pose = result;
+  return summary_;
+}
+
+}  // namespace
+
+const char* RefineFormName(RefineForm form) { return NameOf(kFormNames, form); }
+bool ParseRefineForm(std::string_view name, RefineForm* form) {
+  return ValueOf(kFormNames, name, form);
+}
+const char* ResidualName(ResidualKind kind) { return NameOf(kResidualNames, kind); }
+bool ParseResidual(std::string_view name, ResidualKind* kind) {
+  return ValueOf(kResidualNames, name, kind);
+}
+const char* TerminationName(Termination termination) {
+  return NameOf(kTerminationNames, termination);
+}
+
+bool RefineOptions::IsValid(std::string* error) const {
+  const bool prior_exact = form == RefineForm::kPrior || form == RefineForm::kPriorDepths;
+  if (prior_exact && prior_kind == PriorKind::kNone) {
+    *error = std::string("the form '") + RefineFormName(form) + "' needs a prior_kind";
+    return false;
+  }
+  if (!(threshold_px > 0) || !std::isfinite(threshold_px)) {
+    *error = "threshold_px must be positive and finite";
+    return false;
+  }
+  if (!(loss_scale_sigmas > 0) || !std::isfinite(loss_scale_sigmas)) {
+    *error = "loss_scale_sigmas must be positive and finite";
+    return false;
+  }
+  if (max_rounds < 1 || max_num_iterations < 0) {
+    *error = "max_rounds must be at least 1 and max_num_iterations not negative";
+    return false;
+  }
+  if (noise_px.has_value() && !(*noise_px > 0 && std::isfinite(*noise_px))) {
+    *error = "noise_px must be positive and finite";
+    return false;
+  }
+  return true;
+}
+
+std::string RefineSummary::BriefReport() const {
+  char text[256];
+  std::snprintf(text, sizeof(text),
+                "%s: %d inliers, %d rounds, %d iterations, cost %.6g -> %.6g, median residual %.3f px",
+                message.c_str(), num_inliers, num_rounds, num_iterations, initial_cost, final_cost,
+                median_residual_px);
+  return text;
+}
+
+RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,
+                     const MotionPrior& prior, Pose* pose) {
+  return Refiner(options, matches, prior).Run(pose);
+}
+
+RefineSummary Refine(const RefineOptions& options, const Rig& rig,
+                     const std::vector<Match>& matches, const MotionPrior& prior, Pose* pose) {
+  FramePair pair;
+  pair.rig = rig;
+  pair.matches = matches;
+  std::string error;
+  if (!pair.IsValid(&error)) {
+    RefineSummary summary;
+    summary.termination = Termination::kFailure;
+    summary.message = error;
+    return summary;
+  }
+  return Refine(options, GroupedMatches(rig, matches), prior, pose);
+}
+
+}  // namespace rigel

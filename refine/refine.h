@@ -1,0 +1,114 @@
+// Refinement of a motion on matches: nonlinear least squares with Ceres on epipolar residuals, with
+// re-selection of inliers, the sign of t by cheirality, and the uncertainty of the result.
+#ifndef RIGEL_REFINE_REFINE_H_
+#define RIGEL_REFINE_REFINE_H_
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rigel/core/match.h"
+#include "rigel/core/pose.h"
+#include "rigel/core/prior.h"
+#include "rigel/core/rig.h"
+#include "rigel/minimal/grouped_matches.h"
+#include "rigel/refine/epipolar_residuals.h"
+#include "rigel/refine/loss.h"
+#include "rigel/refine/uncertainty.h"
+
+namespace rigel {
+
+// Which parameters are free; every form uses the exact rotation.
+enum class RefineForm {
+  kFull,         // rotation (3), translation (3; 2 on the sphere where scale is not observable)
+  kPrior,        // the prior is exact: its angle, and t (planar: t in the plane)
+  kDepths,       // rotation (3), l1 and l2 of a reference match, which is exact too (the paper)
+  kPriorDepths,  // the angle, l1 and l2 (planar: one depth less): the paper's model in full
+};
+
+const char* RefineFormName(RefineForm form);          // "full", "prior", "depths", "prior-depths"
+bool ParseRefineForm(std::string_view name, RefineForm* form);
+const char* ResidualName(ResidualKind kind);          // "sampson", "angular", "algebraic"
+bool ParseResidual(std::string_view name, ResidualKind* kind);
+
+enum class ScaleMode {
+  kAuto,   // free where the data determines it (kScaleObservableRatio), else |t| is kept
+  kFree,
+  kFixed,  // |t| stays as at the start
+};
+
+struct RefineOptions {
+  RefineForm form = RefineForm::kFull;
+  ResidualKind residual = ResidualKind::kSampson;
+  // Which part of the prior the forms kPrior and kPriorDepths take as exact, and which part
+  // use_prior weighs.
+  PriorKind prior_kind = PriorKind::kNone;
+  // Adds the prior as residuals weighted by its sigma; a part without a sigma stays out.
+  bool use_prior = false;
+
+  LossKind loss = LossKind::kCauchy;
+  // Scale of the loss in units of the image noise (given, or estimated from the start); > 0.
+  double loss_scale_sigmas = 3.0;
+
+  double threshold_px = 1.5;   // > 0; matches with a larger Sampson error are left out
+  int max_rounds = 5;          // >= 1; selections of inliers
+  int max_num_iterations = 50; // >= 0, a round
+  ScaleMode scale = ScaleMode::kAuto;
+  // 1-sigma image noise where it is known; else estimated (1.4826 times the median |residual| of the
+  // inliers).
+  std::optional<double> noise_px;
+
+  bool IsValid(std::string* error) const;
+};
+
+enum class Termination {
+  kNotRun,
+  kConverged,
+  kIterationLimit,  // usable, not converged
+  kDegenerate,      // the matches do not determine the free parameters; pose unchanged
+  kFailure,         // wrong input; pose unchanged
+};
+
+const char* TerminationName(Termination termination);
+
+struct RefineSummary {
+  Termination termination = Termination::kNotRun;
+  std::string message = "Refine was not called.";
+  int num_rounds = -1;
+  int num_iterations = -1;  // of all rounds
+  double initial_cost = -1.0;  // 1/2 sum rho(r^2) over the first and the last selection
+  double final_cost = -1.0;
+
+  int num_inliers = 0;
+  std::vector<char> inliers;        // 1 or 0 for each match, in the order of the input
+  double median_residual_px = -1.0; // median |Sampson error| of the inliers
+  double noise_px = -1.0;           // given or estimated
+
+  // Covariance of (rotation, translation) for R <- Exp(d) R, t <- t + e over the parameters of kFull
+  // that are free: of rank 5 where scale is not observable. Empty if not determined.
+  std::optional<Matrix6d> covariance;
+  double rotation_sigma = -1.0;        // radians; -1 if there is no covariance
+  double direction_sigma = -1.0;       // radians
+  double relative_scale_sigma = -1.0;  // of |t|, a fraction; infinite if not determined
+  double parallax_px = -1.0;           // see ParallaxPercentilePx()
+  bool rotation_observable = false;
+  bool translation_observable = false;  // the direction of t means something
+  bool scale_observable = false;
+
+  bool IsSolutionUsable() const {
+    return termination == Termination::kConverged || termination == Termination::kIterationLimit;
+  }
+  std::string BriefReport() const;
+};
+
+// Refines `pose`, which must be near the motion. Never throws, exits or logs; on kDegenerate and
+// kFailure `pose` is unchanged. Thread-safe; deterministic.
+RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,
+                     const MotionPrior& prior, Pose* pose);
+RefineSummary Refine(const RefineOptions& options, const Rig& rig,
+                     const std::vector<Match>& matches, const MotionPrior& prior, Pose* pose);
+
+}  // namespace rigel
+
+#endif  // RIGEL_REFINE_REFINE_H_

@@ -1,0 +1,108 @@
+#include "rigel/refine/uncertainty.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "rigel/refine/epipolar_residuals.h"
+
+namespace rigel {
+
+Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<char>& mask,
+                            const Pose& pose) {
+  const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
+  const MotionBasis basis = FullBasis(pose, true);
+  std::vector<GroupLinearization> groups;
+  residuals.Linearize(pose, &basis, &groups);
+  Matrix6d information = Matrix6d::Zero();
+  Eigen::Matrix<double, 6, 1> j;
+  for (int k = 0; k < residuals.size(); ++k) {
+    if (!mask[k]) continue;
+    residuals.Evaluate(groups, k, 6, j.data());
+    information.noalias() += j * j.transpose();
+  }
+  return information;
+}
+
+bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis,
+                       Matrix6d* covariance) {
+  const int k = static_cast<int>(basis.cols());
+  if (k == 0 || !information.allFinite()) return false;
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+  const Square reduced = basis.transpose() * information * basis;
+  // Radians and metres are unlike: bring the diagonal to one before judging the rank.
+  const Eigen::VectorXd diagonal = reduced.diagonal();
+  if (!(diagonal.minCoeff() > 0)) return false;
+  const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
+  const Square scaled = scale.asDiagonal() * reduced * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Square> eigen(scaled);
+  if (!(eigen.eigenvalues()(0) > 1e-14)) return false;
+  const Square inverse = eigen.eigenvectors() *
+                         eigen.eigenvalues().cwiseInverse().asDiagonal() *
+                         eigen.eigenvectors().transpose();
+  const Square unscaled = scale.asDiagonal() * inverse * scale.asDiagonal();
+  *covariance = basis * unscaled * basis.transpose();
+  return true;
+}
+
+MotionBasis FullBasis(const Pose& pose, bool scale_free) {
+  MotionBasis basis;
+  if (scale_free) {
+    basis.setIdentity(6, 6);
+    return basis;
+  }
+  basis.setZero(6, 5);
+  basis.block<3, 3>(0, 0).setIdentity();
+  const double norm = pose.t.norm();
+  const Eigen::Vector3d direction =
+      norm > 0 ? Eigen::Vector3d(pose.t / norm) : Eigen::Vector3d::UnitZ();
+  basis.block<3, 2>(3, 3) = TangentBasis(direction);
+  return basis;
+}
+
+double RelativeScaleSigma(const Matrix6d& information, const Pose& pose) {
+  const double norm = pose.t.norm();
+  Matrix6d covariance;
+  if (!(norm > 0) || !CovarianceOfBasis(information, FullBasis(pose, true), &covariance)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const Eigen::Vector3d direction = pose.t / norm;
+  return std::sqrt(direction.dot(covariance.block<3, 3>(3, 3) * direction)) / norm;
+}
+
+double RotationSigma(const Matrix6d& covariance) {
+  return std::sqrt(covariance.block<3, 3>(0, 0).trace());
+}
+
+double DirectionSigma(const Matrix6d& covariance, const Eigen::Vector3d& t) {
+  const double norm = t.norm();
+  if (!(norm > 0)) return std::numeric_limits<double>::infinity();
+  const Eigen::Matrix<double, 3, 2> across = TangentBasis(t / norm);
+  return std::sqrt(
+             (across.transpose() * covariance.block<3, 3>(3, 3) * across).trace()) /
+         norm;
+}
+
+double ParallaxPercentilePx(const GroupedMatches& matches, const std::vector<char>& mask,
+                            const Pose& pose) {
+  std::vector<double> parallax;
+  for (int k = 0; k < matches.size(); ++k) {
+    const Match& m = matches.matches()[k];
+    if (!mask[k] || !m.IsIntra()) continue;
+    const RigCamera& camera = matches.rig().cameras[m.camera1];
+    const PinholeCamera& c = camera.intrinsics;
+    const Eigen::Vector3d x1 = pose.R * camera.Q * c.Normalize(m.pixel1).normalized();
+    const Eigen::Vector3d x2 = camera.Q * c.Normalize(m.pixel2).normalized();
+    parallax.push_back(0.5 * (c.fx + c.fy) * x1.cross(x2).norm());
+  }
+  if (parallax.empty()) return std::numeric_limits<double>::infinity();
+  const auto nth = parallax.begin() + static_cast<long>(parallax.size() * 4 / 5);
+  std::nth_element(parallax.begin(), nth, parallax.end());
+  return *nth;
+}
+
+}  // namespace rigel

@@ -1,0 +1,60 @@
+// Information, covariance and what of a motion can be observed.
+//
+// All in the perturbation R <- Exp(d) R, t <- t + e: rotation (radians) first, then translation
+// (metres).
+#ifndef RIGEL_REFINE_UNCERTAINTY_H_
+#define RIGEL_REFINE_UNCERTAINTY_H_
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "rigel/core/pose.h"
+#include "rigel/minimal/grouped_matches.h"
+#include "rigel/refine/motion_parameterization.h"
+
+namespace rigel {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+// Scale is observable if the standard deviation of |t| is at most this fraction of |t|.
+inline constexpr double kScaleObservableRatio = 0.05;
+// The direction of t is observable if its standard deviation is at most this ...
+inline constexpr double kDirectionObservableDeg = 10.0;
+// ... and a fifth of the matches move along their epipolar lines by more than this many sigma of
+// the image noise beyond what the rotation moves them. Without translation the matches still fit
+// some direction, as well as their noise does, and the covariance does not know it.
+inline constexpr double kParallaxSigmas = 5.0;
+// Rotation is observable if its largest standard deviation is at most this.
+inline constexpr double kRotationObservableDeg = 10.0;
+
+// J'J of the Sampson residuals of the matches with mask[k] != 0 (grouped order) at `pose`, over the
+// full six parameters; to be divided by the variance of the image noise.
+Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<char>& mask,
+                            const Pose& pose);
+
+// B (B' information B)^-1 B' for the free directions B = `basis` (6 x k). False, and `covariance`
+// left alone, if the information of the free directions is singular.
+bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis,
+                       Matrix6d* covariance);
+
+// The basis of the free rotation with t on the sphere |t| = const (5 columns), or t free (6).
+MotionBasis FullBasis(const Pose& pose, bool scale_free);
+
+// Standard deviation of |t| over |t| when everything is free; infinity where it is not determined.
+double RelativeScaleSigma(const Matrix6d& information, const Pose& pose);
+
+// sqrt(trace) of the rotation block, radians; of the translation block projected off t over |t|,
+// radians.
+double RotationSigma(const Matrix6d& covariance);
+double DirectionSigma(const Matrix6d& covariance, const Eigen::Vector3d& t);
+
+// The angle in pixels that 80 percent of the intra-camera matches of the mask stay below: how far a
+// match moves besides the rotation and the camera's own arm. Infinity if there are none.
+double ParallaxPercentilePx(const GroupedMatches& matches, const std::vector<char>& mask,
+                            const Pose& pose);
+
+}  // namespace rigel
+
+#endif  // RIGEL_REFINE_UNCERTAINTY_H_
