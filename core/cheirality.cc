@@ -9,7 +9,7 @@ void DepthNumerators(const Pose& pose, const RayPair& rays, double* n1, double* 
   const Eigen::Vector3d g = pose.R * rays.ray1.x;
   const Eigen::Vector3d b = pose.R * rays.ray1.s + pose.t - rays.ray2.s;
   const Eigen::Vector3d& f = rays.ray2.x;
-  // b + d1 g = d2 f. With n = g x f: d1 = (f x b).n / n.n... crossing with f and g in turn.
+  // b + d1 g = d2 f, crossed with f and with g: d1 n = f x b and d2 n = g x b for n = g x f.
   const Eigen::Vector3d n = g.cross(f);
   *sin2 = n.squaredNorm();
   *n1 = f.cross(b).dot(n);
@@ -27,13 +27,13 @@ bool TriangulateDepths(const Pose& pose, const RayPair& rays, Depths* depths) {
   return true;
 }
 
-int CheiralityVote(const Pose& pose, const RayPair& rays) {
+Cheirality TestCheirality(const Pose& pose, const RayPair& rays, double min_sin_parallax) {
   double n1 = 0, n2 = 0, sin2 = 0;
   DepthNumerators(pose, rays, &n1, &n2, &sin2);
-  if (!(sin2 > 1e-18)) return 0;
-  if (n1 > 0 && n2 > 0) return 1;
-  if (n1 < 0 && n2 < 0) return -1;
-  return 0;
+  if (!(sin2 > min_sin_parallax * min_sin_parallax)) return Cheirality::kUndecided;
+  if (n1 > 0 && n2 > 0) return Cheirality::kInFront;
+  if (n1 < 0 && n2 < 0) return Cheirality::kBehind;
+  return Cheirality::kMixed;
 }
 
 }  // namespace rigel

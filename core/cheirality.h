@@ -21,9 +21,15 @@ struct Depths {
 // (sine of the parallax below 1e-9): such a match has no finite depth.
 bool TriangulateDepths(const Pose& pose, const RayPair& rays, Depths* depths);
 
-// +1 if the match lies in front of both cameras under `pose`, -1 if behind both (as it does
-// under the wrong sign of t), 0 if neither or if the parallax is zero.
-int CheiralityVote(const Pose& pose, const RayPair& rays);
+// Where a match lies under a motion.
+enum class Cheirality {
+  kUndecided,  // the sine of its parallax is too small: image noise decides the depths
+  kInFront,    // of both cameras
+  kBehind,     // both, as under the wrong sign of t
+  kMixed,      // in front of one, behind the other
+};
+
+Cheirality TestCheirality(const Pose& pose, const RayPair& rays, double min_sin_parallax = 1e-9);
 
 }  // namespace rigel
 

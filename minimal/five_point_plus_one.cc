@@ -17,6 +17,9 @@ namespace {
 // that it is multiplied by is known to a few digits less than a double has.
 constexpr double kBlind = 1e-7;
 
+// Sine of the parallax below which a point tells no depth, and has no vote (cheirality.h).
+constexpr double kNoParallax = 1e-9;
+
 // Polynomials in (x, y, z) by their coefficients:
 //   linear     x, y, z, 1
 //   quadratic  x2, xy, y2, xz, yz, z2, x, y, z, 1
@@ -246,9 +249,13 @@ struct HiddenVariableMatrix {
   }
 };
 
-// The nearest rotation to a nearly orthogonal matrix: one Newton step squares the error.
-Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& R) {
-  return 1.5 * R - 0.5 * (R * (R.transpose() * R));
+// A rotation near a nearly orthogonal matrix, exact to rounding (Gram-Schmidt).
+Eigen::Matrix3d Orthonormalized(const Eigen::Matrix3d& M) {
+  Eigen::Matrix3d R;
+  R.col(0) = M.col(0).normalized();
+  R.col(1) = (M.col(1) - R.col(0).dot(M.col(1)) * R.col(0)).normalized();
+  R.col(2) = R.col(0).cross(R.col(1));
+  return R;
 }
 
 // R and the unit vector b of E = [b]x R up to sign that have most of the five points in front of
@@ -283,10 +290,10 @@ bool Decompose(const Eigen::Matrix3d& E, const Eigen::Vector3d* x1, const Eigen:
     const double twice = 2.0 * b->dot(g);
     const double e1 = -twice * fb.squaredNorm() - d1;
     const double e2 = twice * gb.dot(fb) + d2;
-    votes[0] += d1 > 0 && d2 > 0;
-    votes[1] += d1 < 0 && d2 < 0;
-    votes[2] += e1 > 0 && e2 > 0;
-    votes[3] += e1 < 0 && e2 < 0;
+    votes[0] += d1 > kNoParallax && d2 > kNoParallax;
+    votes[1] += d1 < -kNoParallax && d2 < -kNoParallax;
+    votes[2] += e1 > kNoParallax && e2 > kNoParallax;
+    votes[3] += e1 < -kNoParallax && e2 < -kNoParallax;
   }
   int choice = 0;
   for (int k = 1; k < 4; ++k) {
@@ -295,7 +302,7 @@ bool Decompose(const Eigen::Matrix3d& E, const Eigen::Vector3d* x1, const Eigen:
   if (votes[choice] < 3) return false;
   if (choice >= 2) *R = cofactor + bE;
   if (choice % 2 == 1) *b = -*b;
-  *R = NearestRotation(*R);
+  *R = Orthonormalized(*R);
   return true;
 }
 
@@ -345,7 +352,7 @@ void Refine(const Eigen::Vector3d* x1, const Eigen::Vector3d* x2, Eigen::Matrix3
     for (int k = 0; k < 3; ++k) {
       R->col(k) += Eigen::Vector3d(d[0], d[1], d[2]).cross(Eigen::Vector3d(R->col(k)));
     }
-    *R = NearestRotation(*R);
+    *R = Orthonormalized(*R);
     *b = (*b + d[3] * T.col(0) + d[4] * T.col(1)).normalized();
   }
 }

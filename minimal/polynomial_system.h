@@ -18,9 +18,7 @@
 
 namespace rigel::polynomial_system {
 
-constexpr int NumMonomials(int degree) {
-  return (degree + 1) * (degree + 2) * (degree + 3) / 6;
-}
+constexpr int NumMonomials(int degree) { return (degree + 1) * (degree + 2) * (degree + 3) / 6; }
 
 inline constexpr int kMaxDegree = 7;
 
@@ -68,6 +66,15 @@ inline void AddProduct(const double* a, const double* b, double sign, double* pr
   }
 }
 
+// The n x n action of multiplication by x on the monomials that are a basis of the solutions'
+// coordinate ring: row b holds x times monomial b. The first four monomials are 1, x, y, z.
+template <int kMaxSize>
+struct ActionMatrix {
+  int size = 0;
+  // Two more rows for RealSolutions.
+  double entries[kMaxSize + 2][kMaxSize];
+};
+
 // Rows are polynomials of degree <= kDegree; columns descend in the order of the monomials.
 template <int kDegree, int kMaxRows>
 class MacaulayMatrix {
@@ -83,44 +90,347 @@ class MacaulayMatrix {
       if (!std::isfinite(p[k])) return false;
       largest = std::max(largest, std::abs(p[k]));
     }
-    if (!(largest > 0.0)) return false;
+    const int num_shifts = NumMonomials(kDegree - degree);
+    if (!(largest > 0.0) || num_rows_ + num_shifts > kMaxRows) return false;
     const double scale = 1.0 / largest;
-    for (int m = 0; m < NumMonomials(kDegree - degree); ++m) {
+    for (int m = 0; m < num_shifts; ++m) {
       const auto& shift = kMonomials.exponents[m];
       double* row = rows_[num_rows_++];
       std::fill(row, row + kColumns, 0.0);
       for (int k = 0; k < num_coefficients; ++k) {
         const auto& e = kMonomials.exponents[k];
-        row[kColumns - 1 -
-            kMonomials.index[e[0] + shift[0]][e[1] + shift[1]][e[2] + shift[2]]] = scale * p[k];
+        row[kColumns - 1 - kMonomials.index[e[0] + shift[0]][e[1] + shift[1]][e[2] + shift[2]]] =
+            scale * p[k];
       }
     }
     return true;
   }
 
-  // `leading[k]`: the number of leading monomials of degree kDegree - k; all of that degree, or
-  // the best conditioned ones. Writes the action of multiplication by x on the other monomials of
-  // degree < kDegree, n x n with leading dimension `stride`; the first four of them are
-  // 1, x, y, z. Returns n; 0 if a pivot vanishes.
-  int ActionOfX(const int* leading, int num_degrees, double* action, int stride) {
-    for (int c = 0; c < kColumns; ++c) monomial_[c] = kColumns - 1 - c;
+  // `leading[k]`: how many monomials of degree kDegree - k are leading monomials; all, or else the
+  // best conditioned ones are taken. None may be of degree 1 or 0. False if a pivot vanishes or
+  // if the number of remaining monomials is not kMaxSize or less.
+  template <int kMaxSize>
+  bool Reduce(const int* leading, int num_degrees, ActionMatrix<kMaxSize>* action) {
+    int monomial[kColumns];  // of a column
+    for (int c = 0; c < kColumns; ++c) monomial[c] = kColumns - 1 - c;
+    int pivot_of[kColumns];  // of a monomial; -1: none
+    std::fill(pivot_of, pivot_of + kColumns, -1);
     int rank = 0;
-    int end = 0;
-    // Free columns of finished degrees are moved behind the pivots of the next ones; what they
-    // hold is carried along.
+    int begin = 0;
     for (int k = 0; k < num_degrees; ++k) {
-      const int size = NumMonomials(kDegree - k) - NumMonomials(kDegree - k - 1);
-      const int num_free_before = end - rank;
-      // The block of this degree comes directly after the pivots found so far.
-      for (int c = 0; num_free_before > 0 && c < size; ++c) SwapColumns(rank + c, end + c, size);
-      (void)num_free_before;
-      end += size;
-      if (!Eliminate(rank, rank + leading[k], rank + size, leading[k] < size)) return 0;
-      rank += leading[k];
+      const int end = kColumns - NumMonomials(kDegree - k - 1);
+      const bool choose = leading[k] < end - begin;
+      for (int c = begin; c < begin + leading[k]; ++c, ++rank) {
+        if (!Pivot(rank, c, choose ? end : c + 1, monomial)) return false;
+        column_[rank] = c;
+        pivot_of[monomial[c]] = rank;
+      }
+      begin = end;
     }
-    return 0;
+
+    int basis[kMaxSize];
+    int row_of[kColumns];
+    int n = 0;
+    for (int m = 0; m < kColumns; ++m) {
+      if (pivot_of[m] >= 0) continue;
+      if (n == kMaxSize) return false;
+      row_of[m] = n;
+      basis[n++] = m;
+    }
+    int column_of[kColumns];
+    for (int c = 0; c < kColumns; ++c) column_of[monomial[c]] = c;
+    action->size = n;
+    double reduced[kColumns];
+    for (int b = 0; b < n; ++b) {
+      const auto& e = kMonomials.exponents[basis[b]];
+      const int product = kMonomials.index[e[0] + 1][e[1]][e[2]];
+      double* out = action->entries[b];
+      const int pivot = pivot_of[product];
+      if (pivot < 0) {
+        std::fill(out, out + n, 0.0);
+        out[row_of[product]] = 1.0;
+        continue;
+      }
+      for (int c = column_[pivot] + 1; c < kColumns; ++c) reduced[c] = rows_[pivot][c];
+      for (int q = pivot + 1; q < rank; ++q) {
+        const double* row = rows_[q];
+        const double factor = reduced[column_[q]];
+        if (factor == 0.0) continue;
+        for (int c = column_[q] + 1; c < kColumns; ++c) reduced[c] -= factor * row[c];
+      }
+      for (int k = 0; k < n; ++k) {
+        const int c = column_of[basis[k]];
+        out[k] = c > column_[pivot] ? -reduced[c] : 0.0;
+      }
+    }
+    return true;
   }
+
+ private:
+  // Brings the largest entry of the rows from `rank` on and the columns [c, end) to (rank, c),
+  // makes it 1 and clears the column below it.
+  bool Pivot(int rank, int c, int end, int* monomial) {
+    double best = 0.0;
+    int best_row = rank;
+    int best_column = c;
+    for (int r = rank; r < num_rows_; ++r) {
+      for (int k = c; k < end; ++k) {
+        if (std::abs(rows_[r][k]) > best) {
+          best = std::abs(rows_[r][k]);
+          best_row = r;
+          best_column = k;
+        }
+      }
+    }
+    if (!(best > 1e-14) || !std::isfinite(best)) return false;
+    if (best_column != c) {
+      for (int r = 0; r < num_rows_; ++r) std::swap(rows_[r][c], rows_[r][best_column]);
+      std::swap(monomial[c], monomial[best_column]);
+    }
+    double* top = rows_[rank];
+    if (best_row != rank) std::swap_ranges(top + c, top + kColumns, rows_[best_row] + c);
+    const double inv = 1.0 / top[c];
+    top[c] = 1.0;
+    for (int k = c + 1; k < kColumns; ++k) top[k] *= inv;
+    for (int r = rank + 1; r < num_rows_; ++r) {
+      double* row = rows_[r];
+      const double factor = row[c];
+      if (factor == 0.0) continue;
+      for (int k = c + 1; k < kColumns; ++k) row[k] -= factor * top[k];
+    }
+    return true;
+  }
+
+  int num_rows_ = 0;
+  int column_[kMaxRows];  // of a pivot
+  double rows_[kMaxRows][kColumns];
 };
+
+// The real solutions that a reduced system has.
+template <int kMaxSize>
+class RealSolutions {
+ public:
+  // Destroys `action`. `zero_multiplicity`: of a solution at x = 0 that is known and not wanted.
+  RealSolutions(ActionMatrix<kMaxSize>* action, int zero_multiplicity)
+      : a_(action->entries), n_(action->size), zero_multiplicity_(zero_multiplicity) {
+    ReduceToHessenberg();
+  }
+
+  // Writes up to kMaxSize values of x.
+  int FindX(double* x);
+
+  // The solution of the given x, to the accuracy of x.
+  std::array<double, 3> Solution(double x) {
+    EvaluateVector(x);
+    double y = 0.0;
+    double z = 0.0;
+    for (int k = 0; k < n_; ++k) {
+      y += a_[n_][k] * v_[k];
+      z += a_[n_ + 1][k] * v_[k];
+    }
+    return {x, y / v_[0], z / v_[0]};
+  }
+
+ private:
+  // H = S^-1 A S by Gaussian elimination with pivoting, its subdiagonal scaled to 1; rows n and
+  // n + 1 become the rows of y and z of S (Wilkinson, "The Algebraic Eigenvalue Problem", ch. 6).
+  void ReduceToHessenberg() {
+    for (int k = 0; k < n_; ++k) {
+      a_[n_][k] = k == 2 ? 1.0 : 0.0;
+      a_[n_ + 1][k] = k == 3 ? 1.0 : 0.0;
+    }
+    double factors[kMaxSize];
+    for (int m = 1; m < n_; ++m) {
+      int pivot = m;
+      for (int i = m + 1; i < n_; ++i) {
+        if (std::abs(a_[i][m - 1]) > std::abs(a_[pivot][m - 1])) pivot = i;
+      }
+      if (pivot != m) {
+        std::swap_ranges(a_[m] + m - 1, a_[m] + n_, a_[pivot] + m - 1);
+        for (int r = 0; r < n_ + 2; ++r) std::swap(a_[r][m], a_[r][pivot]);
+      }
+      // A zero would split the matrix; a tiny number does not move its eigenvalues.
+      if (std::abs(a_[m][m - 1]) < 1e-30) a_[m][m - 1] = 1e-30;
+      const double inv = 1.0 / a_[m][m - 1];
+      for (int i = m + 1; i < n_; ++i) {
+        const double factor = a_[i][m - 1] * inv;
+        factors[i] = factor;
+        if (factor == 0.0) continue;
+        for (int k = m; k < n_; ++k) a_[i][k] -= factor * a_[m][k];
+      }
+      for (int r = 0; r < n_ + 2; ++r) {
+        double sum[4] = {0.0, 0.0, 0.0, 0.0};
+        int i = m + 1;
+        for (; i + 3 < n_; i += 4) {
+          for (int l = 0; l < 4; ++l) sum[l] += factors[i + l] * a_[r][i + l];
+        }
+        for (; i < n_; ++i) sum[0] += factors[i] * a_[r][i];
+        a_[r][m] += (sum[0] + sum[1]) + (sum[2] + sum[3]);
+      }
+    }
+    double scale[kMaxSize];
+    scale[0] = 1.0;
+    for (int k = 1; k < n_; ++k) scale[k] = scale[k - 1] * a_[k][k - 1];
+    for (int r = 0; r < n_ + 2; ++r) {
+      const double inv = r < n_ ? 1.0 / scale[r] : 1.0;
+      for (int k = r < n_ ? r : 0; k < n_; ++k) a_[r][k] *= inv * scale[k];
+    }
+  }
+
+  // Hyman's method: the vector v_ for which all rows of (H - x I) v but the first vanish.
+  void EvaluateVector(double x) {
+    v_[n_ - 1] = 1.0;
+    for (int k = n_ - 1; k > 0; --k) {
+      double sum[4] = {0.0, 0.0, 0.0, 0.0};
+      int j = k;
+      for (; j + 3 < n_; j += 4) {
+        for (int l = 0; l < 4; ++l) sum[l] += a_[k][j + l] * v_[j + l];
+      }
+      for (; j < n_; ++j) sum[0] += a_[k][j] * v_[j];
+      v_[k - 1] = x * v_[k] - ((sum[0] + sum[1]) + (sum[2] + sum[3]));
+    }
+  }
+
+  // det(x I - H): the same recurrence in polynomials, c[0..n] ascending.
+  void CharacteristicPolynomial(double* c) const {
+    double p[kMaxSize][kMaxSize];
+    p[n_ - 1][0] = 1.0;
+    for (int k = n_ - 1; k >= 0; --k) {
+      double* out = k > 0 ? p[k - 1] : c;
+      out[0] = 0.0;
+      for (int i = 0; i < n_ - k; ++i) out[i + 1] = p[k][i];
+      for (int j = k; j < n_; ++j) {
+        const double h = a_[k][j];
+        for (int i = 0; i < n_ - j; ++i) out[i] -= h * p[j][i];
+      }
+    }
+  }
+
+  double (*a_)[kMaxSize];
+  int n_;
+  int zero_multiplicity_;
+  double v_[kMaxSize];
+};
+
+// Real roots of the polynomial c of degree n <= kMax by Descartes' rule in the Bernstein basis, as
+// in polynomial.h but with a degree known at run time and to the accuracy that an iteration on the
+// original equations needs, not more.
+template <int kMax>
+class RootFinder {
+ public:
+  RootFinder(const double* c, int n) : n_(n) {
+    // The variable is scaled to make first and last coefficients alike.
+    std::copy(c, c + n + 1, c_);
+  }
+
+  int Find(double* roots) {
+    count_ = 0;
+    double piece[kMax + 1];
+    for (int side = 0; side < 4; ++side) {
+      const bool reversed = side >= 2;
+      const bool mirrored = side % 2 == 1;
+      for (int k = 0; k <= n_; ++k) {
+        const double value = reversed ? c_[n_ - k] : c_[k];
+        piece[k] = mirrored && k % 2 == 1 ? -value : value;
+      }
+      const int first = count_;
+      UnitInterval(piece, roots);
+      for (int k = first; k < count_; ++k) {
+        const double x = mirrored ? -roots[k] : roots[k];
+        roots[k] = reversed ? 1.0 / x : x;
+      }
+    }
+    return count_;
+  }
+
+ private:
+  static double Horner(const double* c, int n, double x) {
+    double value = c[n];
+    for (int k = n - 1; k >= 0; --k) value = value * x + c[k];
+    return value;
+  }
+
+  void UnitInterval(const double* c, double* roots) {
+    struct Piece {
+      double low, width;
+      double b[kMax + 1];
+    };
+    constexpr int kMaxLevel = 24;
+    Piece stack[kMaxLevel + 2];
+    double binomial = 1.0;
+    for (int j = 0; j <= n_; ++j) {
+      stack[0].b[j] = c[j] / binomial;
+      binomial = binomial * (n_ - j) / (j + 1);
+    }
+    for (int j = 1; j <= n_; ++j) {
+      double* b = stack[0].b;
+      for (int k = n_; k >= j; --k) b[k] += b[k - 1];
+    }
+    stack[0].low = 0.0;
+    stack[0].width = 1.0;
+    int top = 0;
+    while (top >= 0 && count_ < kMax) {
+      Piece& piece = stack[top];
+      int variations = 0;
+      for (int k = 0; k < n_; ++k) variations += (piece.b[k] < 0) != (piece.b[k + 1] < 0);
+      if (variations == 0) {
+        --top;
+      } else if (variations == 1) {
+        roots[count_++] = Refine(c, piece.low, piece.b[0], piece.low + piece.width, piece.b[n_]);
+        --top;
+      } else if (top > kMaxLevel) {
+        roots[count_++] = piece.low + 0.5 * piece.width;
+        --top;
+      } else {
+        Piece& right = stack[top + 1];
+        std::copy(piece.b, piece.b + n_ + 1, right.b);
+        for (int k = 0; k < n_; ++k) {
+          piece.b[k] = right.b[0];
+          for (int i = 0; i < n_ - k; ++i) right.b[i] = 0.5 * (right.b[i] + right.b[i + 1]);
+        }
+        piece.b[n_] = right.b[0];
+        piece.width *= 0.5;
+        right.low = piece.low + piece.width;
+        right.width = piece.width;
+        ++top;
+      }
+    }
+  }
+
+  double Refine(const double* c, double a, double fa, double b, double fb) {
+    double x = b;
+    for (int k = 0; k < 40; ++k) {
+      x = (a * fb - b * fa) / (fb - fa);
+      if (!(x > std::min(a, b) && x < std::max(a, b)) || k % 8 == 7) x = 0.5 * (a + b);
+      if (std::abs(b - a) <= 1e-10 * std::abs(x)) break;
+      const double fx = Horner(c, n_, x);
+      if (fx == 0.0 || !std::isfinite(fx)) break;
+      const bool small_step = std::abs(x - b) <= 1e-9 * std::abs(x);
+      if ((fx < 0) != (fb < 0)) {
+        a = b;
+        fa = fb;
+      } else {
+        const double weight = 1.0 - fx / fb;
+        fa *= weight > 0 ? weight : 0.5;
+      }
+      b = x;
+      fb = fx;
+      if (small_step) break;
+    }
+    return x;
+  }
+
+  int n_;
+  int count_ = 0;
+  double c_[kMax + 1];
+};
+
+template <int kMaxSize>
+int RealSolutions<kMaxSize>::FindX(double* x) {
+  double c[kMaxSize + 1];
+  CharacteristicPolynomial(c);
+  return RootFinder<kMaxSize>(c + zero_multiplicity_, n_ - zero_multiplicity_).Find(x);
+}
 
 }  // namespace rigel::polynomial_system
 

@@ -2,10 +2,9 @@
 
 #include <chrono>
 
-#include "rigel/core/cheirality.h"
 #include "rigel/minimal/prepared_matches.h"
 #include "rigel/minimal/sampler.h"
-#include "rigel/refine/scale_search.h"
+#include "rigel/refine/sign_and_scale.h"
 #include "rigel/refine/small_engine.h"
 
 namespace rigel {
@@ -33,9 +32,8 @@ class FramePairSolver {
         residuals_(matches, ResidualKind::kSampson),
         engine_(residuals_),
         threshold_px_(threshold_px) {
-    // Inter-camera matches determine the scale; intra-camera ones hardly do.
     for (const MatchGroup& group : matches.groups()) {
-      if (group.camera1 != group.camera2) polar_ = false;
+      if (group.camera1 != group.camera2) intra_only_ = false;
     }
   }
 
@@ -51,25 +49,19 @@ class FramePairSolver {
     return matches_.Score(model, threshold_px_, bound, inliers);
   }
 
-  // Epipolar errors do not see the sign of t where scale is not observable: the inliers' depths do.
   bool Admit(Model* model) const {
-    matches_.SquaredErrors(*model, &squared_errors_);
-    int votes = 0;
-    for (int k = 0; k < matches_.size(); ++k) {
-      if (squared_errors_[k] < threshold_px_ * threshold_px_) {
-        votes += CheiralityVote(*model, prepared_.rays(k));
-      }
-    }
-    if (votes < 0) model->t = -model->t;
-    return model->AllFinite();
+    return model->AllFinite() && ResolveSign(matches_, threshold_px_, model);
   }
 
   bool LocalOptimize(Model* model) const {
     SmallEngineOptions options;
     options.loss_scale = threshold_px_;
-    options.polar = polar_ || !model->has_scale;
-    if (options.polar) ChooseTranslationScale(matches_, threshold_px_, model);
-    return engine_.Minimize(options, model);
+    options.inverse_scale = intra_only_ || !model->has_scale;
+    Model optimized = *model;
+    if (options.inverse_scale) ResolveSignAndScale(matches_, threshold_px_, &optimized);
+    if (!engine_.Minimize(options, &optimized) || !Admit(&optimized)) return false;
+    *model = optimized;
+    return true;
   }
 
  private:
@@ -80,8 +72,7 @@ class FramePairSolver {
   EpipolarResiduals residuals_;
   mutable SmallEngine engine_;
   double threshold_px_;
-  bool polar_ = true;
-  mutable std::vector<double> squared_errors_;
+  bool intra_only_ = true;  // such matches hardly determine the scale
 };
 
 double MillisecondsSince(std::chrono::steady_clock::time_point start) {
@@ -174,7 +165,7 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
   if (!estimate.refine.IsSolutionUsable()) {
     estimate.status = EstimateStatus::kNotRefined;
     estimate.message = "not refined: " + estimate.refine.message;
-    estimate.pose = ransac.best_minimal;
+    estimate.pose = ransac.best;
     return estimate;
   }
   estimate.num_inliers = estimate.refine.num_inliers;

@@ -28,7 +28,7 @@ enum class EstimateStatus {
   kInvalidInput,   // the options, the pair or its prior: see message
   kTooFewMatches,  // fewer than the solver's sample
   kNoSolution,     // no sample gave a motion
-  kNotRefined,     // RANSAC succeeded, the refinement did not: pose is the raw one
+  kNotRefined,     // RANSAC succeeded, the refinement did not: pose is RANSAC's
 };
 
 const char* EstimateStatusName(EstimateStatus status);

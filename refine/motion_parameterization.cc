@@ -9,9 +9,8 @@
 namespace rigel {
 namespace {
 
-// Bounds the factor by which the polar form may change |t|, so that it stays finite where nothing
-// holds it: e^20.
-constexpr double kMaxLogScale = 20.0;
+constexpr double kMinInverseScale = 1e-3;
+constexpr double kMaxInverseScale = 4.0;
 
 }  // namespace
 
@@ -34,7 +33,7 @@ bool MotionParameterization::Set(RotationForm rotation, TranslationForm translat
       translation_size_ = 3;
       break;
     case TranslationForm::kSphere:
-    case TranslationForm::kPolar:
+    case TranslationForm::kInverseScale:
       translation_size_ = translation == TranslationForm::kSphere ? 2 : 3;
       norm_ = start.t.norm();
       if (!(norm_ > 0)) return false;
@@ -111,7 +110,7 @@ void MotionParameterization::Evaluate(const double* parameters, Pose* pose,
       if (basis != nullptr) basis->block<3, 3>(3, column).setIdentity();
       break;
     case TranslationForm::kSphere:
-    case TranslationForm::kPolar: {
+    case TranslationForm::kInverseScale: {
       // The exponential map of the sphere at the start's direction.
       const Eigen::Vector2d phi(p[0], p[1]);
       const double angle2 = phi.squaredNorm();
@@ -120,14 +119,17 @@ void MotionParameterization::Evaluate(const double* parameters, Pose* pose,
       const double sinc = angle > 1e-4 ? std::sin(angle) / angle : 1.0 - angle2 / 6.0;
       const double bend = angle > 1e-4 ? (c - sinc) / angle2 : -1.0 / 3.0 + angle2 / 30.0;
       const Eigen::Vector3d along = tangent_ * phi;
-      const bool polar = translation_ == TranslationForm::kPolar;
-      const double norm =
-          polar ? norm_ * std::exp(std::clamp(p[2], -kMaxLogScale, kMaxLogScale)) : norm_;
+      const bool with_scale = translation_ == TranslationForm::kInverseScale;
+      const double inverse =
+          with_scale ? std::clamp(1.0 + p[2], kMinInverseScale, kMaxInverseScale) : 1.0;
+      const double norm = norm_ / inverse;
       pose->t = norm * (c * direction_ + sinc * along);
       if (basis != nullptr) {
         basis->block<3, 2>(3, column) =
             norm * (sinc * tangent_ + (bend * along - sinc * direction_) * phi.transpose());
-        if (polar && std::abs(p[2]) < kMaxLogScale) basis->block<3, 1>(3, column + 2) = pose->t;
+        if (with_scale && inverse > kMinInverseScale && inverse < kMaxInverseScale) {
+          basis->block<3, 1>(3, column + 2) = -pose->t / inverse;
+        }
       }
       break;
     }

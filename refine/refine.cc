@@ -12,13 +12,12 @@
 #include <ceres/ceres.h>
 
 #include "rigel/core/angles.h"
-#include "rigel/core/cheirality.h"
 #include "rigel/core/frame_pair.h"
 #include "rigel/core/rays.h"
 #include "rigel/minimal/alignment.h"
 #include "rigel/refine/motion_parameterization.h"
 #include "rigel/refine/prior_residuals.h"
-#include "rigel/refine/scale_search.h"
+#include "rigel/refine/sign_and_scale.h"
 
 namespace rigel {
 namespace {
@@ -155,12 +154,12 @@ class Refiner {
   void EstimateNoise();
   Matrix6d Information(const Pose& pose) const;
   bool ScaleIsFree(const Pose& pose) const;
+  bool SearchesScale(const Pose& pose) const;
   bool ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotation,
                    TranslationForm* translation) const;
   bool ChooseReference(const Pose& pose, RayPair* reference) const;
   bool Solve(bool scale_free, Pose* pose);
   bool Iterate(Pose* pose);
-  bool SignIsWrong(const Pose& pose) const;
   void FillUncertainty(const Pose& pose);
   bool Fail(Termination termination, const std::string& message);
 
@@ -235,6 +234,16 @@ bool Refiner::ScaleIsFree(const Pose& pose) const {
   return RelativeScaleSigma(Information(pose), pose) <= kScaleObservableRatio;
 }
 
+// At the false minima of intra-camera matches the scale looks well determined, so that their kind
+// decides and not the information there.
+bool Refiner::SearchesScale(const Pose& pose) const {
+  if (options_.scale != ScaleMode::kAuto) return false;
+  const bool all_intra =
+      std::all_of(matches_.groups().begin(), matches_.groups().end(),
+                  [](const MatchGroup& group) { return group.camera1 == group.camera2; });
+  return all_intra || !ScaleIsFree(pose);
+}
+
 bool Refiner::ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotation,
                           TranslationForm* translation) const {
   const bool prior_exact =
@@ -251,7 +260,7 @@ bool Refiner::ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotat
     // At t = 0 there is no direction to move on a sphere.
     const bool free = scale_free || !(pose.t.norm() > 0);
     const TranslationForm held = options_.scale == ScaleMode::kFixed ? TranslationForm::kSphere
-                                                                     : TranslationForm::kPolar;
+                                                                     : TranslationForm::kInverseScale;
     *translation = planar ? (free ? TranslationForm::kPlane : TranslationForm::kCircle)
                           : (free ? TranslationForm::kFree : held);
   }
@@ -363,15 +372,6 @@ bool Refiner::Iterate(Pose* pose) {
   return true;
 }
 
-bool Refiner::SignIsWrong(const Pose& pose) const {
-  int votes = 0;
-  for (int k = 0; k < matches_.size(); ++k) {
-    if (!mask_[k]) continue;
-    votes += CheiralityVote(pose, MakeRayPair(matches_.rig(), matches_.matches()[k]));
-  }
-  return votes < 0;
-}
-
 void Refiner::FillUncertainty(const Pose& pose) {
   const Matrix6d information = Information(pose);
   summary_.relative_scale_sigma = RelativeScaleSigma(information, pose);
@@ -413,14 +413,18 @@ RefineSummary Refiner::Run(Pose* pose) {
   Pose result = *pose;
   SelectInliers(result);
   EstimateNoise();
-  if (options_.scale == ScaleMode::kAuto && !ScaleIsFree(result)) {
-    ChooseTranslationScale(matches_, options_.threshold_px, &result);
+  if (SearchesScale(result)) {
+    ResolveSignAndScale(matches_, options_.threshold_px, &result);
   }
   bool done = Iterate(&result);
-  // A flipped t is not a minimum: refine again from there.
-  if (done && SignIsWrong(result)) {
-    result.t = -result.t;
-    done = Iterate(&result);
+  // A t with another sign or scale is not a minimum: refine again from there.
+  if (done) {
+    const Eigen::Vector3d t = result.t;
+    const bool possible = ResolveSign(matches_, options_.threshold_px, &result);
+    if (!possible && SearchesScale(result)) {
+      ResolveSignAndScale(matches_, options_.threshold_px, &result);
+    }
+    if (result.t != t) done = Iterate(&result);
   }
   // What is said of the scale must be said of the final motion.
   if (done && ScaleIsFree(result) != scale_free_) done = Iterate(&result);

@@ -15,9 +15,8 @@ struct SmallEngineOptions {
   LossKind loss = LossKind::kTruncated;
   double loss_scale = 1.5;  // in the residual's unit
   int max_num_iterations = 4;
-  // Moves the direction of t and log |t|, which cannot run through infinity to -t: for matches that
-  // hardly determine |t|.
-  bool polar = false;
+  // TranslationForm::kInverseScale instead of a free t: for matches that hardly determine |t|.
+  bool inverse_scale = false;
 };
 
 // Levenberg-Marquardt (ceres::TinySolver) over rotation and translation. TinySolver knows no loss

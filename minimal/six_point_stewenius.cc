@@ -1,0 +1,151 @@
+#include "rigel/minimal/six_point_stewenius.h"
+
+#include <cmath>
+
+#include <Eigen/Core>
+
+#include "rigel/minimal/polynomial_system.h"
+
+namespace rigel {
+namespace {
+
+using polynomial_system::ActionMatrix;
+using polynomial_system::AddProduct;
+using polynomial_system::MacaulayMatrix;
+using polynomial_system::NumMonomials;
+using polynomial_system::RealSolutions;
+
+constexpr int kQuadric = NumMonomials(2);
+constexpr int kQuartic = NumMonomials(4);
+constexpr int kSextic = NumMonomials(6);
+
+struct RayPairInBasis {
+  Eigen::Vector3d x, y, s, u;
+};
+
+// The coefficients of b' R a for the rotation (1 + |r|^2) R of the unnormalized quaternion (1, r),
+// in the order of polynomial_system.h: 1, x, y, z, xx, xy, xz, yy, yz, zz.
+void AddBilinear(const Eigen::Vector3d& b, const Eigen::Vector3d& a, double* c) {
+  const double xx = b[0] * a[0], yy = b[1] * a[1], zz = b[2] * a[2];
+  c[0] += xx + yy + zz;
+  c[1] += 2.0 * (b[2] * a[1] - b[1] * a[2]);
+  c[2] += 2.0 * (b[0] * a[2] - b[2] * a[0]);
+  c[3] += 2.0 * (b[1] * a[0] - b[0] * a[1]);
+  c[4] += xx - yy - zz;
+  c[5] += 2.0 * (b[0] * a[1] + b[1] * a[0]);
+  c[6] += 2.0 * (b[0] * a[2] + b[2] * a[0]);
+  c[7] += yy - xx - zz;
+  c[8] += 2.0 * (b[1] * a[2] + b[2] * a[1]);
+  c[9] += zz - xx - yy;
+}
+
+Eigen::Matrix3d Basis() {
+  Eigen::Matrix3d B;
+  B << 2.0, 6.0, 3.0, 3.0, 2.0, -6.0, -6.0, 3.0, -2.0;
+  return B / 7.0;
+}
+
+template <int kDegree, int kMaxRows, int kSize>
+int RealRotations(const double (*quartics)[kQuartic], int num_quartics,
+                  const double (*sextics)[kSextic], int num_sextics, const int* leading,
+                  int num_degrees, int zero_multiplicity, double (*r)[3]) {
+  ActionMatrix<kSize> action;
+  {
+    MacaulayMatrix<kDegree, kMaxRows> macaulay;
+    for (int k = 0; k < num_quartics; ++k) {
+      if (!macaulay.AddMultiples(quartics[k], 4)) return 0;
+    }
+    for (int k = 0; k < num_sextics; ++k) {
+      if (!macaulay.AddMultiples(sextics[k], 6)) return 0;
+    }
+    if (!macaulay.Reduce(leading, num_degrees, &action)) return 0;
+  }
+  RealSolutions<kSize> roots(&action, zero_multiplicity);
+  double x[kSize];
+  const int num_roots = roots.FindX(x);
+  for (int k = 0; k < num_roots; ++k) {
+    const auto solution = roots.Solution(x[k]);
+    for (int i = 0; i < 3; ++i) r[k][i] = solution[i];
+  }
+  return num_roots;
+}
+
+}  // namespace
+
+int Solve6ptStewenius(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
+  solutions->clear();
+  const Eigen::Matrix3d B = Basis();
+  RayPairInBasis m[6];
+  for (int k = 0; k < 6; ++k) {
+    const RayPair& rays = matches.rays(sample[k]);
+    m[k] = {B * rays.ray1.x, B * rays.ray2.x, B * rays.ray1.s, B * rays.ray2.s};
+  }
+  const auto same = [&m](int i, int j) { return m[i].s == m[j].s && m[i].u == m[j].u; };
+
+  double quartics[20][kQuartic];
+  double sextics[15][kSextic];
+  int num_quartics = 0;
+  int num_sextics = 0;
+  for (int a = 0; a < 4; ++a) {
+    double rows[6][3][kQuadric] = {};
+    for (int k = a + 1; k < 6; ++k) {
+      const Eigen::Vector3d ds = m[k].s - m[a].s;
+      const Eigen::Vector3d du = m[k].u - m[a].u;
+      AddBilinear(-m[k].y, m[a].x.cross(m[k].x), rows[k][0]);
+      AddBilinear(m[k].y.cross(m[a].y), m[k].x, rows[k][1]);
+      AddBilinear(m[k].y, ds.cross(m[k].x), rows[k][2]);
+      AddBilinear(du.cross(m[k].y), m[k].x, rows[k][2]);
+    }
+    double minors[6][6][kQuartic] = {};
+    for (int b = a + 1; b < 6; ++b) {
+      for (int c = b + 1; c < 6; ++c) {
+        AddProduct<2, 2>(rows[b][0], rows[c][1], 1.0, minors[b][c]);
+        AddProduct<2, 2>(rows[b][1], rows[c][0], -1.0, minors[b][c]);
+        if (same(a, b) && same(a, c)) {
+          std::copy(minors[b][c], minors[b][c] + kQuartic, quartics[num_quartics++]);
+        }
+      }
+    }
+    for (int b = a + 1; b < 6; ++b) {
+      for (int c = b + 1; c < 6; ++c) {
+        for (int d = c + 1; d < 6; ++d) {
+          if ((same(a, b) && (same(a, c) || same(a, d))) || (same(c, d) && (same(a, c) || same(b, c)))) {
+            continue;
+          }
+          double* sextic = sextics[num_sextics++];
+          std::fill(sextic, sextic + kSextic, 0.0);
+          AddProduct<4, 2>(minors[b][c], rows[d][2], 1.0, sextic);
+          AddProduct<4, 2>(minors[b][d], rows[c][2], -1.0, sextic);
+          AddProduct<4, 2>(minors[c][d], rows[b][2], 1.0, sextic);
+        }
+      }
+    }
+  }
+  double r[64][3];
+  int num_roots = 0;
+  if (num_quartics == 0) {
+    const int leading[] = {36, 20};
+    num_roots = RealRotations<7, 60, 64>(quartics, 0, sextics, num_sextics, leading, 2, 0, r);
+  } else if (num_quartics == 1) {
+    const int leading[] = {36, 24, 3, 1};
+    num_roots = RealRotations<7, 68, 56>(quartics, 1, sextics, num_sextics, leading, 4, 0, r);
+  } else if (num_quartics == 2) {
+    const int leading[] = {36, 28, 6, 2};
+    num_roots = RealRotations<7, 76, 48>(quartics, 2, sextics, num_sextics, leading, 4, 0, r);
+  } else if (num_quartics == 4) {
+    const int leading[] = {36, 28, 12, 4};
+    num_roots = RealRotations<7, 104, 40>(quartics, 4, sextics, num_sextics, leading, 4, 0, r);
+  } else if (num_quartics == 10) {
+    const int leading[] = {21, 15};
+    num_roots = RealRotations<5, 40, 20>(quartics, 10, sextics, 0, leading, 2, 0, r);
+  }
+  for (int k = 0; k < num_roots; ++k) {
+    const Eigen::Vector3d q = B.transpose() * Eigen::Vector3d(r[k][0], r[k][1], r[k][2]);
+    Solution& solution = solutions->Append();
+    solution.R = Eigen::Quaterniond(1.0, q[0], q[1], q[2]).normalized().toRotationMatrix();
+    solution.t.setZero();
+  }
+  return solutions->size();
+}
+
+}  // namespace rigel

@@ -1,0 +1,103 @@
+#include "rigel/minimal/six_point_ventura.h"
+
+#include <cmath>
+
+#include <Eigen/Core>
+
+#include "rigel/minimal/polynomial_system.h"
+
+namespace rigel {
+namespace {
+
+using polynomial_system::ActionMatrix;
+using polynomial_system::AddProduct;
+using polynomial_system::MacaulayMatrix;
+using polynomial_system::NumMonomials;
+using polynomial_system::RealSolutions;
+
+// A linear function of r: coefficients of 1, x, y, z.
+using Linear = double[4];
+
+struct Row {
+  Linear entry[4];
+};
+
+// The basis of r in which it is solved; its first axis is no likely rotation axis, so that roots
+// are told apart by their first coordinate.
+Eigen::Matrix3d Basis() {
+  Eigen::Matrix3d B;
+  B << 2.0, 6.0, 3.0, 3.0, 2.0, -6.0, -6.0, 3.0, -2.0;
+  return B / 7.0;
+}
+
+}  // namespace
+
+int Solve6ptVentura(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
+  solutions->clear();
+  const Eigen::Matrix3d B = Basis();
+  Row rows[6];
+  for (int m = 0; m < 6; ++m) {
+    const RayPair& rays = matches.rays(sample[m]);
+    const Eigen::Vector3d x = B * rays.ray1.x;
+    const Eigen::Vector3d y = B * rays.ray2.x;
+    const Eigen::Vector3d p = (B * rays.ray1.s).cross(x);
+    const Eigen::Vector3d q = (B * rays.ray2.s).cross(y);
+    // n = (x + r x x) x y = x x y + x (r.y) - r (x.y);  k = y.p + q.x + r . (p x y + x x q).
+    const Eigen::Vector3d n0 = x.cross(y);
+    const double xy = x.dot(y);
+    for (int i = 0; i < 3; ++i) {
+      rows[m].entry[i][0] = n0[i];
+      for (int j = 0; j < 3; ++j) rows[m].entry[i][1 + j] = x[i] * y[j] - (i == j ? xy : 0.0);
+    }
+    const Eigen::Vector3d k1 = p.cross(y) + x.cross(q);
+    rows[m].entry[3][0] = y.dot(p) + q.dot(x);
+    for (int j = 0; j < 3; ++j) rows[m].entry[3][1 + j] = k1[j];
+  }
+
+  // 2 x 2 minors of columns (0, 1) and (2, 3), then the 4 x 4 minors by Laplace expansion.
+  constexpr int kQuadric = NumMonomials(2);
+  double first[6][6][kQuadric];
+  double second[6][6][kQuadric];
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i + 1; j < 6; ++j) {
+      for (int c = 0; c < 4; c += 2) {
+        double* minor = c == 0 ? first[i][j] : second[i][j];
+        std::fill(minor, minor + kQuadric, 0.0);
+        AddProduct<1, 1>(rows[i].entry[c], rows[j].entry[c + 1], 1.0, minor);
+        AddProduct<1, 1>(rows[i].entry[c + 1], rows[j].entry[c], -1.0, minor);
+      }
+    }
+  }
+  MacaulayMatrix<4, 15> macaulay;
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i + 1; j < 6; ++j) {
+      for (int k = j + 1; k < 6; ++k) {
+        for (int l = k + 1; l < 6; ++l) {
+          double quartic[NumMonomials(4)] = {};
+          AddProduct<2, 2>(first[i][j], second[k][l], 1.0, quartic);
+          AddProduct<2, 2>(first[i][k], second[j][l], -1.0, quartic);
+          AddProduct<2, 2>(first[i][l], second[j][k], 1.0, quartic);
+          AddProduct<2, 2>(first[j][k], second[i][l], 1.0, quartic);
+          AddProduct<2, 2>(first[j][l], second[i][k], -1.0, quartic);
+          AddProduct<2, 2>(first[k][l], second[i][j], 1.0, quartic);
+          if (!macaulay.AddMultiples(quartic, 4)) return 0;
+        }
+      }
+    }
+  }
+  const int leading[1] = {15};
+  ActionMatrix<20> action;
+  if (!macaulay.Reduce(leading, 1, &action)) return 0;
+  RealSolutions<20> roots(&action, 0);
+  double x[20];
+  const int num_roots = roots.FindX(x);
+  for (int k = 0; k < num_roots; ++k) {
+    const auto r = roots.Solution(x[k]);
+    Solution& solution = solutions->Append();
+    solution.R = ExpSO3(B.transpose() * Eigen::Vector3d(r[0], r[1], r[2]));
+    solution.t.setZero();
+  }
+  return solutions->size();
+}
+
+}  // namespace rigel

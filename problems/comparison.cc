@@ -1,0 +1,155 @@
+#include "rigel/problems/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rigel/core/angles.h"
+#include "rigel/core/metrics.h"
+#include "rigel/problems/parallel.h"
+
+namespace rigel {
+namespace {
+
+MotionErrors ErrorsOf(const Pose& truth, const Pose& pose, bool direction_means,
+                      bool scale_means) {
+  MotionErrors errors;
+  errors.rotation = RotationError(truth.R, pose.R);
+  if (truth.t.norm() > kMinTrueTranslation && direction_means) {
+    const double direction = TranslationDirectionError(truth.t, pose.t);
+    if (std::isfinite(direction)) errors.direction = direction;
+    const double scale = ScaleError(truth.t, pose.t);
+    if (std::isfinite(scale) && scale_means) errors.scale = scale;
+  }
+  return errors;
+}
+
+PairResult RunPair(const FramePair& pair, const EstimateOptions& options) {
+  PairResult result;
+  result.name = pair.name;
+  result.sequence = pair.sequence;
+  EstimateOptions pair_options = options;
+  if (pair.noise_px.has_value()) pair_options.refine.noise_px = pair.noise_px;
+  const MotionEstimate estimate = EstimateMotion(pair_options, pair);
+  result.status = estimate.status;
+  result.message = estimate.message;
+  result.inlier_ratio = estimate.inlier_ratio;
+  result.iterations = estimate.iterations;
+  result.ransac_ms = estimate.ransac_ms;
+  result.refine_ms = estimate.refine_ms;
+  result.failed = estimate.status != EstimateStatus::kSuccess;
+  if (result.failed || !pair.truth.has_value()) return result;
+  // Without a refinement nothing is known of what can be observed; the motion stands as it is.
+  const bool refined = options.refine_motion;
+  const bool direction_means = !refined || estimate.refine.translation_observable;
+  const bool scale_means = refined ? estimate.refine.scale_observable : estimate.raw.has_scale;
+  result.raw = ErrorsOf(*pair.truth, estimate.raw, direction_means, scale_means);
+  if (refined) {
+    result.refined = ErrorsOf(*pair.truth, estimate.pose, direction_means, scale_means);
+    RefineOptions bound_options = options.refine;
+    bound_options.prior_kind = FindSolver(options.solver)->prior;
+    bound_options.threshold_px = options.ransac.threshold_px;
+    result.bound = ComputeCramerRaoBound(bound_options, pair);
+  }
+  return result;
+}
+
+}  // namespace
+
+bool ParseMatchUse(std::string_view name, MatchUse* use) {
+  if (name == "all") {
+    *use = MatchUse::kAll;
+  } else if (name == "intra") {
+    *use = MatchUse::kIntra;
+  } else if (name == "inter") {
+    *use = MatchUse::kInter;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void SelectMatches(MatchUse use, FramePair* pair) {
+  if (use == MatchUse::kAll) return;
+  const bool intra = use == MatchUse::kIntra;
+  const auto end = std::remove_if(pair->matches.begin(), pair->matches.end(),
+                                  [intra](const Match& m) { return m.IsIntra() != intra; });
+  pair->matches.erase(end, pair->matches.end());
+}
+
+std::vector<std::string> SolversForPairs(const std::vector<FramePair>& pairs) {
+  std::vector<std::string> names;
+  for (const SolverInfo& solver : SolverCatalogue()) {
+    const bool all = std::all_of(pairs.begin(), pairs.end(), [&](const FramePair& pair) {
+      return HasPrior(pair.prior, solver.prior);
+    });
+    if (all) names.emplace_back(solver.name);
+  }
+  return names;
+}
+
+std::vector<PairResult> RunSolver(const std::vector<FramePair>& pairs,
+                                  const EstimateOptions& options, int num_threads,
+                                  const std::function<void()>& progress) {
+  std::vector<PairResult> results(pairs.size());
+  ParallelFor(static_cast<int>(pairs.size()), num_threads, [&](int k) {
+    results[k] = RunPair(pairs[k], options);
+    if (progress) progress();
+  });
+  return results;
+}
+
+SolverSummary Summarize(const std::string& solver, const std::string& sequence,
+                        const std::vector<PairResult>& results) {
+  SolverSummary summary;
+  summary.solver = solver;
+  summary.sequence = sequence;
+  std::vector<double> rotation[2], direction[2], scale[2];
+  std::vector<double> bound_rotation, bound_direction;
+  std::vector<double> inlier_ratio, iterations, ransac_ms, refine_ms;
+  for (const PairResult& result : results) {
+    ++summary.pairs;
+    if (result.failed) {
+      ++summary.failures;
+      continue;
+    }
+    const std::optional<MotionErrors>* errors[2] = {&result.raw, &result.refined};
+    for (int k = 0; k < 2; ++k) {
+      if (!errors[k]->has_value()) continue;
+      const MotionErrors& e = **errors[k];
+      rotation[k].push_back(RadToDeg(e.rotation));
+      if (e.direction) direction[k].push_back(RadToDeg(*e.direction));
+      if (e.scale) scale[k].push_back(*e.scale);
+    }
+    if (result.bound) {
+      bound_rotation.push_back(RadToDeg(result.bound->rotation));
+      bound_direction.push_back(RadToDeg(result.bound->direction));
+    }
+    inlier_ratio.push_back(result.inlier_ratio);
+    iterations.push_back(result.iterations);
+    ransac_ms.push_back(result.ransac_ms);
+    refine_ms.push_back(result.refine_ms);
+  }
+  const size_t solved = static_cast<size_t>(summary.pairs - summary.failures);
+  // A statistic over less than half of the pairs would speak of a selection.
+  const auto in_most = [&](const std::vector<double>& values) {
+    return 2 * values.size() > solved ? ComputeStatistics(values) : std::nullopt;
+  };
+  summary.raw_rotation_deg = ComputeStatistics(rotation[0]);
+  summary.raw_direction_deg = in_most(direction[0]);
+  summary.raw_scale = in_most(scale[0]);
+  summary.refined_rotation_deg = ComputeStatistics(rotation[1]);
+  summary.refined_direction_deg = in_most(direction[1]);
+  summary.refined_scale = in_most(scale[1]);
+  if (summary.raw_direction_deg) summary.direction_pairs = static_cast<int>(direction[0].size());
+  if (bound_rotation.size() == solved) {
+    summary.bound_rotation_deg = ComputeStatistics(bound_rotation);
+    summary.bound_direction_deg = ComputeStatistics(bound_direction);
+  }
+  summary.inlier_ratio = ComputeStatistics(inlier_ratio);
+  summary.iterations = ComputeStatistics(iterations);
+  summary.ransac_ms = ComputeStatistics(ransac_ms);
+  summary.refine_ms = ComputeStatistics(refine_ms);
+  return summary;
+}
+
+}  // namespace rigel

@@ -1,0 +1,89 @@
+// Raw against refined accuracy of solvers over frame pairs with known truth.
+#ifndef RIGEL_PROBLEMS_COMPARISON_H_
+#define RIGEL_PROBLEMS_COMPARISON_H_
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rigel/core/frame_pair.h"
+#include "rigel/problems/cramer_rao.h"
+#include "rigel/problems/prior_source.h"
+#include "rigel/problems/statistics.h"
+#include "rigel/refine/estimate_motion.h"
+
+namespace rigel {
+
+enum class MatchUse { kAll, kIntra, kInter };
+
+bool ParseMatchUse(std::string_view name, MatchUse* use);  // "all", "intra", "inter"
+
+// Keeps the matches of that kind.
+void SelectMatches(MatchUse use, FramePair* pair);
+
+struct ComparisonOptions {
+  std::vector<std::string> solvers;  // empty: all whose prior every pair has
+  MatchUse use = MatchUse::kAll;
+  PriorSourceOptions prior;
+  EstimateOptions estimate;  // its solver is replaced by each of `solvers`
+  int num_threads = 1;
+};
+
+// One motion against the truth. An error that does not exist is left out: the direction where the
+// truth or the estimate has none that means something, the scale where it is not observable.
+struct MotionErrors {
+  double rotation = 0.0;  // radians
+  std::optional<double> direction;
+  std::optional<double> scale;  // fraction
+};
+
+struct PairResult {
+  std::string name;
+  std::string sequence;
+  EstimateStatus status = EstimateStatus::kNotRun;
+  std::string message;
+  std::optional<MotionErrors> raw, refined;
+  std::optional<CramerRaoBound> bound;
+  double inlier_ratio = 0.0;
+  int iterations = 0;
+  double ransac_ms = 0.0;
+  double refine_ms = 0.0;
+
+  // No estimate, or one that could not be refined where that was asked for.
+  bool failed = true;
+};
+
+// Below this the true motion has no direction that an estimate could be held to, metres.
+inline constexpr double kMinTrueTranslation = 1e-2;
+
+// The names of the catalogue whose prior every pair has.
+std::vector<std::string> SolversForPairs(const std::vector<FramePair>& pairs);
+
+// Runs one solver over all pairs (already selected and with priors applied). Results in input order
+// and the same for any number of threads, but for the times. `progress` (may be empty) is called
+// after each pair, from any thread.
+std::vector<PairResult> RunSolver(const std::vector<FramePair>& pairs,
+                                  const EstimateOptions& options, int num_threads,
+                                  const std::function<void()>& progress);
+
+// What a report says of one solver over a group of pairs (docs/formats.md).
+struct SolverSummary {
+  std::string solver;
+  std::string sequence = "all";
+  int pairs = 0;
+  int failures = 0;
+  int direction_pairs = 0;
+  std::optional<Statistics> raw_rotation_deg, raw_direction_deg, raw_scale;
+  std::optional<Statistics> refined_rotation_deg, refined_direction_deg, refined_scale;
+  std::optional<Statistics> bound_rotation_deg, bound_direction_deg;
+  std::optional<Statistics> inlier_ratio, iterations, ransac_ms, refine_ms;
+};
+
+SolverSummary Summarize(const std::string& solver, const std::string& sequence,
+                        const std::vector<PairResult>& results);
+
+}  // namespace rigel
+
+#endif  // RIGEL_PROBLEMS_COMPARISON_H_
