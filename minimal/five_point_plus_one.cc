@@ -168,7 +168,7 @@ bool Eliminate(Cubic rows[10]) {
     }
     std::swap(row[p], row[best]);
     const double pivot = row[p][p];
-    if (!(std::abs(pivot) > 1e-14)) return false;
+    if (!(std::abs(pivot) > 1e-10)) return false;
     const double inverse = 1.0 / pivot;
     for (int k = p + 1; k < 20; ++k) row[p][k] *= inverse;
     for (int r = p + 1; r < 10; ++r) {

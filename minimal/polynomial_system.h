@@ -107,8 +107,8 @@ class MacaulayMatrix {
   }
 
   // `leading[k]`: how many monomials of degree kDegree - k are leading monomials; all, or else the
-  // best conditioned ones are taken. None may be of degree 1 or 0. False if a pivot vanishes or
-  // if the number of remaining monomials is not kMaxSize or less.
+  // best conditioned ones are taken. None may be of degree 1 or 0, and at most one of degree
+  // kDegree is left over. False if a pivot vanishes or more than kMaxSize monomials are left.
   template <int kMaxSize>
   bool Reduce(const int* leading, int num_degrees, ActionMatrix<kMaxSize>* action) {
     int monomial[kColumns];  // of a column
@@ -119,8 +119,10 @@ class MacaulayMatrix {
     int begin = 0;
     for (int k = 0; k < num_degrees; ++k) {
       const int end = kColumns - NumMonomials(kDegree - k - 1);
-      const bool choose = leading[k] < end - begin;
       for (int c = begin; c < begin + leading[k]; ++c, ++rank) {
+        // A search of all columns pays only where there are few left.
+        const bool choose =
+            leading[k] < end - begin && (num_rows_ - rank) * (end - c) <= kMaxSearch;
         if (!Pivot(rank, c, choose ? end : c + 1, monomial)) return false;
         column_[rank] = c;
         pivot_of[monomial[c]] = rank;
@@ -129,44 +131,104 @@ class MacaulayMatrix {
     }
 
     int basis[kMaxSize];
-    int row_of[kColumns];
+    int basis_column[kMaxSize];
+    int basis_of[kColumns];  // of a monomial
     int n = 0;
     for (int m = 0; m < kColumns; ++m) {
       if (pivot_of[m] >= 0) continue;
       if (n == kMaxSize) return false;
-      row_of[m] = n;
+      basis_of[m] = n;
       basis[n++] = m;
     }
-    int column_of[kColumns];
-    for (int c = 0; c < kColumns; ++c) column_of[monomial[c]] = c;
-    action->size = n;
-    double reduced[kColumns];
-    for (int b = 0; b < n; ++b) {
-      const auto& e = kMonomials.exponents[basis[b]];
-      const int product = kMonomials.index[e[0] + 1][e[1]][e[2]];
-      double* out = action->entries[b];
-      const int pivot = pivot_of[product];
-      if (pivot < 0) {
-        std::fill(out, out + n, 0.0);
-        out[row_of[product]] = 1.0;
-        continue;
-      }
-      for (int c = column_[pivot] + 1; c < kColumns; ++c) reduced[c] = rows_[pivot][c];
-      for (int q = pivot + 1; q < rank; ++q) {
-        const double* row = rows_[q];
-        const double factor = reduced[column_[q]];
-        if (factor == 0.0) continue;
-        for (int c = column_[q] + 1; c < kColumns; ++c) reduced[c] -= factor * row[c];
-      }
+    for (int c = 0; c < kColumns; ++c) {
+      if (pivot_of[monomial[c]] < 0) basis_column[basis_of[monomial[c]]] = c;
+    }
+    const auto times = [](int m, int i, int j) {
+      const auto& e = kMonomials.exponents[m];
+      return kMonomials.index[e[0] + i][e[1] + j][e[2]];
+    };
+    const bool top_left = basis[n - 1] >= NumMonomials(kDegree - 1);
+    int first = rank;
+    for (int b = 0; b < n - (top_left ? 1 : 0); ++b) {
+      const int pivot = pivot_of[times(basis[b], 1, 0)];
+      if (pivot >= 0) first = std::min(first, pivot);
+    }
+    if (top_left) first = 0;
+
+    // The leading monomials in terms of the others, from the last pivot back.
+    double reduced[kMaxPivots][kMaxSize];
+    for (int p = rank - 1; p >= first; --p) {
+      const double* row = rows_[p];
+      double* out = reduced[p];
       for (int k = 0; k < n; ++k) {
-        const int c = column_of[basis[k]];
-        out[k] = c > column_[pivot] ? -reduced[c] : 0.0;
+        out[k] = basis_column[k] > column_[p] ? -row[basis_column[k]] : 0.0;
+      }
+      for (int q = p + 1; q < rank; ++q) {
+        const double factor = row[column_[q]];
+        if (factor == 0.0) continue;
+        for (int k = 0; k < n; ++k) out[k] -= factor * reduced[q][k];
+      }
+    }
+    const auto add = [&](int m, double factor, double* out) {
+      if (pivot_of[m] < 0) {
+        out[basis_of[m]] += factor;
+      } else {
+        for (int k = 0; k < n; ++k) out[k] += factor * reduced[pivot_of[m]][k];
+      }
+    };
+    action->size = n;
+    for (int b = 0; b < n; ++b) std::fill(action->entries[b], action->entries[b] + n, 0.0);
+    for (int b = 0; b < n - (top_left ? 1 : 0); ++b) {
+      add(times(basis[b], 1, 0), 1.0, action->entries[b]);
+    }
+    if (!top_left) return true;
+
+    // One monomial m of degree kDegree is left over, and x m is in no row. For s of degree
+    // kDegree - 1 let y s = a m + A and x s = b m + B, A and B of lower degree; then
+    // x (y s) = y (x s) says a (x m) - b (y m) = y B - x A. Two such s give x m.
+    const int top = basis[n - 1];
+    const auto share = [&](int m) {
+      return m == top ? 1.0 : pivot_of[m] >= 0 ? reduced[pivot_of[m]][n - 1] : 0.0;
+    };
+    constexpr int kFirst = NumMonomials(kDegree - 2);
+    constexpr int kCount = NumMonomials(kDegree - 1) - kFirst;
+    double as[kCount], bs[kCount];
+    int s1 = 0;
+    for (int s = 0; s < kCount; ++s) {
+      as[s] = share(times(kFirst + s, 0, 1));
+      bs[s] = share(times(kFirst + s, 1, 0));
+      if (as[s] * as[s] + bs[s] * bs[s] > as[s1] * as[s1] + bs[s1] * bs[s1]) s1 = s;
+    }
+    int s2 = 0;
+    double det = 0.0;
+    for (int s = 0; s < kCount; ++s) {
+      const double value = as[s1] * bs[s] - as[s] * bs[s1];
+      if (std::abs(value) > std::abs(det)) {
+        det = value;
+        s2 = s;
+      }
+    }
+    if (!(std::abs(det) > 1e-14)) return false;
+    double* out = action->entries[n - 1];
+    for (const int side : {0, 1}) {
+      const int s = side == 0 ? s1 : s2;
+      const double weight = side == 0 ? bs[s2] / det : -bs[s1] / det;
+      double A[kMaxSize] = {};
+      double B[kMaxSize] = {};
+      add(times(kFirst + s, 0, 1), 1.0, A);
+      add(times(kFirst + s, 1, 0), 1.0, B);
+      for (int k = 0; k < n - 1; ++k) {
+        if (B[k] != 0.0) add(times(basis[k], 0, 1), weight * B[k], out);
+        if (A[k] != 0.0) add(times(basis[k], 1, 0), -weight * A[k], out);
       }
     }
     return true;
   }
 
  private:
+  static constexpr int kMaxSearch = 1000;
+  static constexpr int kMaxPivots = kMaxRows < kColumns ? kMaxRows : kColumns;
+
   // Brings the largest entry of the rows from `rank` on and the columns [c, end) to (rank, c),
   // makes it 1 and clears the column below it.
   bool Pivot(int rank, int c, int end, int* monomial) {

@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
 
 #include "rigel/minimal/polynomial_system.h"
 
@@ -45,6 +46,14 @@ Eigen::Matrix3d Basis() {
   return B / 7.0;
 }
 
+// The rotation R of largest trace(R'A).
+Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& A) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d U = svd.matrixU();
+  if (U.determinant() * svd.matrixV().determinant() < 0) U.col(2) = -U.col(2);
+  return U * svd.matrixV().transpose();
+}
+
 template <int kDegree, int kMaxRows, int kSize>
 int RealRotations(const double (*quartics)[kQuartic], int num_quartics,
                   const double (*sextics)[kSextic], int num_sextics, const int* leading,
@@ -74,13 +83,25 @@ int RealRotations(const double (*quartics)[kQuartic], int num_quartics,
 
 int Solve6ptStewenius(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
   solutions->clear();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (int k = 0; k < 6; ++k) {
+    const RayPair& rays = matches.rays(sample[k]);
+    covariance += rays.ray2.x * rays.ray1.x.transpose();
+  }
+  if (!covariance.allFinite()) return 0;
   const Eigen::Matrix3d B = Basis();
+  const Eigen::Matrix3d R0 = NearestRotation(covariance);
+  const Eigen::Matrix3d C = B * R0;
   RayPairInBasis m[6];
   for (int k = 0; k < 6; ++k) {
     const RayPair& rays = matches.rays(sample[k]);
-    m[k] = {B * rays.ray1.x, B * rays.ray2.x, B * rays.ray1.s, B * rays.ray2.s};
+    m[k] = {C * rays.ray1.x, B * rays.ray2.x, C * rays.ray1.s, B * rays.ray2.s};
   }
-  const auto same = [&m](int i, int j) { return m[i].s == m[j].s && m[i].u == m[j].u; };
+  const auto same = [&](int i, int j) {
+    const RayPair& a = matches.rays(sample[i]);
+    const RayPair& b = matches.rays(sample[j]);
+    return a.ray1.s == b.ray1.s && a.ray2.s == b.ray2.s;
+  };
 
   double quartics[20][kQuartic];
   double sextics[15][kSextic];
@@ -109,7 +130,8 @@ int Solve6ptStewenius(const PreparedMatches& matches, const int* sample, Solutio
     for (int b = a + 1; b < 6; ++b) {
       for (int c = b + 1; c < 6; ++c) {
         for (int d = c + 1; d < 6; ++d) {
-          if ((same(a, b) && (same(a, c) || same(a, d))) || (same(c, d) && (same(a, c) || same(b, c)))) {
+          if ((same(a, b) && (same(a, c) || same(a, d))) ||
+              (same(c, d) && (same(a, c) || same(b, c)))) {
             continue;
           }
           double* sextic = sextics[num_sextics++];
@@ -124,7 +146,7 @@ int Solve6ptStewenius(const PreparedMatches& matches, const int* sample, Solutio
   double r[64][3];
   int num_roots = 0;
   if (num_quartics == 0) {
-    const int leading[] = {36, 20};
+    const int leading[] = {35, 21};
     num_roots = RealRotations<7, 60, 64>(quartics, 0, sextics, num_sextics, leading, 2, 0, r);
   } else if (num_quartics == 1) {
     const int leading[] = {36, 24, 3, 1};
@@ -142,7 +164,7 @@ int Solve6ptStewenius(const PreparedMatches& matches, const int* sample, Solutio
   for (int k = 0; k < num_roots; ++k) {
     const Eigen::Vector3d q = B.transpose() * Eigen::Vector3d(r[k][0], r[k][1], r[k][2]);
     Solution& solution = solutions->Append();
-    solution.R = Eigen::Quaterniond(1.0, q[0], q[1], q[2]).normalized().toRotationMatrix();
+    solution.R = Eigen::Quaterniond(1.0, q[0], q[1], q[2]).normalized().toRotationMatrix() * R0;
     solution.t.setZero();
   }
   return solutions->size();

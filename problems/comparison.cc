@@ -10,8 +10,7 @@
 namespace rigel {
 namespace {
 
-MotionErrors ErrorsOf(const Pose& truth, const Pose& pose, bool direction_means,
-                      bool scale_means) {
+MotionErrors ErrorsOf(const Pose& truth, const Pose& pose, bool direction_means, bool scale_means) {
   MotionErrors errors;
   errors.rotation = RotationError(truth.R, pose.R);
   if (truth.t.norm() > kMinTrueTranslation && direction_means) {

@@ -49,8 +49,7 @@ bool ApplyPriorSource(const PriorSourceOptions& options, int index, FramePair* p
       if (!prior.gravity1.has_value()) prior.gravity1 = y;
       prior.gravity2 = truth.R * *prior.gravity1;
       const Eigen::Vector3d omega = LogSO3(truth.R);
-      const Eigen::Vector3d axis =
-          omega.norm() > 1e-6 ? Eigen::Vector3d(omega.normalized()) : y;
+      const Eigen::Vector3d axis = omega.norm() > 1e-6 ? Eigen::Vector3d(omega.normalized()) : y;
       prior.axis = axis;
       prior.normal = axis;
       if (truth.t.norm() > 0) {

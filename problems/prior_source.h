@@ -33,8 +33,8 @@ struct PriorSourceOptions {
 bool ParsePriorSource(std::string_view name, PriorSource* source);      // "file", "body", "truth"
 bool ParsePriorNoiseAxis(std::string_view name, PriorNoiseAxis* axis);  // "pitch", "roll", "random"
 
-// Replaces and disturbs pair->prior; `index` is the pair's number, which fixes its random sign. False
-// with a message if the source is the truth and the pair has none.
+// Replaces and disturbs pair->prior; `index` is the pair's number, which fixes its random sign.
+// False with a message if the source is the truth and the pair has none.
 bool ApplyPriorSource(const PriorSourceOptions& options, int index, FramePair* pair,
                       std::string* error);
 

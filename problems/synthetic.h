@@ -28,8 +28,8 @@ struct SceneOptions {
   double rotation_deg = 1.0;  // about the axis, exactly
   RotationAxisPattern rotation_axis = RotationAxisPattern::kY;
   MotionPattern motion = MotionPattern::kForward;  // |t| = 1 m; forward +z, sideways +x
-  double inter_share = 0.0;    // of the matches; needs two cameras
-  double outlier_share = 0.0;  // second point uniform in the image
+  double inter_share = 0.0;                        // of the matches; needs two cameras
+  double outlier_share = 0.0;                      // second point uniform in the image
   uint64_t seed = 1;
 
   bool IsValid(std::string* error) const;

@@ -129,9 +129,9 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
     return Refused(EstimateStatus::kInvalidInput, options.solver + ": " + error);
   }
   if (static_cast<int>(pair.matches.size()) < solver.sample_size) {
-    return Refused(EstimateStatus::kTooFewMatches,
-                   std::to_string(pair.matches.size()) + " matches, " + options.solver +
-                       " needs " + std::to_string(solver.sample_size));
+    return Refused(EstimateStatus::kTooFewMatches, std::to_string(pair.matches.size()) +
+                                                       " matches, " + options.solver + " needs " +
+                                                       std::to_string(solver.sample_size));
   }
 
   MotionEstimate estimate;

@@ -36,7 +36,7 @@ const char* EstimateStatusName(EstimateStatus status);
 struct MotionEstimate {
   EstimateStatus status = EstimateStatus::kNotRun;
   std::string message = "EstimateMotion was not called.";
-  Pose pose;  // the estimate: refined where that was asked for and done
+  Pose pose;     // the estimate: refined where that was asked for and done
   Solution raw;  // the best-scoring minimal hypothesis of RANSAC, before any optimization
   int num_inliers = 0;
   double inlier_ratio = 0.0;
@@ -51,8 +51,8 @@ struct MotionEstimate {
   }
 };
 
-// Never throws, exits or logs on what `pair` or `options` hold. Thread-safe; the same input and seed
-// give the same result.
+// Never throws, exits or logs on what `pair` or `options` hold. Thread-safe; the same input and
+// seed give the same result.
 MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& pair);
 
 }  // namespace rigel

@@ -154,8 +154,7 @@ void MotionParameterization::Evaluate(const double* parameters, Pose* pose,
       for (int k = 0; k < translation_size_; ++k) l += depth_basis_.col(k) * p[k];
       pose->t = TranslationFromDepths(pose->R, reference_, l.x(), l.y());
       if (basis != nullptr) {
-        const Eigen::Vector3d arm =
-            pose->R * (reference_.ray1.Foot() + l.x() * reference_.ray1.x);
+        const Eigen::Vector3d arm = pose->R * (reference_.ray1.Foot() + l.x() * reference_.ray1.x);
         // t = ... - arm, and the arm turns with R.
         const Eigen::Matrix3d turn = Skew(arm);
         basis->block(3, 0, 3, rotation_size_) = turn * basis->block(0, 0, 3, rotation_size_);

@@ -26,9 +26,9 @@ enum class RotationForm {
 enum class TranslationForm {
   kFree,          // t: 3
   kSphere,        // the direction of t, |t| as at the start: 2
-  kInverseScale,  // the direction of t, 1/|t| (relative to the start): 3. E is linear in 1/|t|, and it
-                  // is kept within [1/1000, 4] of the start: no run through infinity to -t, and none
-                  // into the false minima of a tiny |t| (sign_and_scale.h)
+  kInverseScale,  // the direction of t, 1/|t| (relative to the start): 3. E is linear in 1/|t|, and
+                  // it is kept within [1/1000, 4] of the start: no run through infinity to -t, and
+                  // none into the false minima of a tiny |t| (sign_and_scale.h)
   kPlane,         // t in the plane perpendicular to the prior's normal: 2
   kCircle,        // the direction of t in that plane: 1
   kDepths,        // l1, l2 of the reference match, which is exact (paper eqs. a2, a5): 2
@@ -42,7 +42,8 @@ class MotionParameterization {
   // `start` is projected onto the form where it is not of it: the nearest angle, the plane, the
   // depths of the point closest to both rays of the reference. `alignment` is used by kAngle and
   // the planar forms, `reference` (rays in the body frames) by the depth forms. False if the
-  // start has no place in the form: |t| = 0 on a sphere, circle or with inverse scale, a reference with parallel rays.
+  // start has no place in the form: |t| = 0 on a sphere, circle or with inverse scale, a reference
+  // with parallel rays.
   bool Set(RotationForm rotation, TranslationForm translation, const Pose& start,
            const Alignment& alignment, const RayPair& reference);
 
@@ -59,7 +60,8 @@ class MotionParameterization {
   Pose start_;
   Alignment alignment_;
   double start_angle_ = 0.0;
-  // Sphere, inverse scale and circle: t = norm_ (cos . direction_ + sin . tangent). Plane: t = start + tangent.
+  // Sphere, inverse scale and circle: t = norm_ (cos . direction_ + sin . tangent). Plane: t =
+  // start + tangent.
   double norm_ = 0.0;
   Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 3, 2> tangent_ = Eigen::Matrix<double, 3, 2>::Zero();

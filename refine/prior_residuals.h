@@ -2,8 +2,8 @@
 //
 //   gravity  the two components of R g1 across g2, over sqrt(2) sigma: both directions are measured
 //   axis     the two components of R n - n across n, over sigma times the length of that chord per
-//            radian of error in n, 2 sin(a/2); below kMinAxisAngle of rotation the axis says nothing
-//            measurable and the chord at kMinAxisAngle is used
+//            radian of error in n, 2 sin(a/2); below kMinAxisAngle of rotation the axis says
+//            nothing measurable and the chord at kMinAxisAngle is used
 //   normal   the same for R n - n, and the component of t along n over |t| sigma
 // A part without a sigma gives no residual.
 #ifndef RIGEL_REFINE_PRIOR_RESIDUALS_H_
@@ -21,7 +21,8 @@ inline constexpr int kMaxPriorResiduals = 8;
 
 class PriorResiduals {
  public:
-  using Residuals = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxPriorResiduals, 1>;
+  using Residuals =
+      Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxPriorResiduals, 1>;
   using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, kMaxPriorResiduals, 6>;
 
   PriorResiduals() = default;

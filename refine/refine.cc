@@ -253,14 +253,14 @@ bool Refiner::ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotat
   const bool depths =
       options_.form == RefineForm::kDepths || options_.form == RefineForm::kPriorDepths;
   if (depths) {
-    *translation = planar ? (scale_free ? TranslationForm::kPlanarDepths
-                                        : TranslationForm::kPlanarDepth)
-                          : (scale_free ? TranslationForm::kDepths : TranslationForm::kDepth);
+    *translation =
+        planar ? (scale_free ? TranslationForm::kPlanarDepths : TranslationForm::kPlanarDepth)
+               : (scale_free ? TranslationForm::kDepths : TranslationForm::kDepth);
   } else {
     // At t = 0 there is no direction to move on a sphere.
     const bool free = scale_free || !(pose.t.norm() > 0);
-    const TranslationForm held = options_.scale == ScaleMode::kFixed ? TranslationForm::kSphere
-                                                                     : TranslationForm::kInverseScale;
+    const TranslationForm held =
+        options_.scale == ScaleMode::kFixed ? TranslationForm::kSphere : TranslationForm::kSphere;
     *translation = planar ? (free ? TranslationForm::kPlane : TranslationForm::kCircle)
                           : (free ? TranslationForm::kFree : held);
   }
@@ -381,14 +381,12 @@ void Refiner::FillUncertainty(const Pose& pose) {
     summary_.covariance = covariance;
     summary_.rotation_sigma = RotationSigma(covariance);
     summary_.direction_sigma = DirectionSigma(covariance, pose.t);
-    summary_.rotation_observable =
-        RadToDeg(summary_.rotation_sigma) <= kRotationObservableDeg;
+    summary_.rotation_observable = RadToDeg(summary_.rotation_sigma) <= kRotationObservableDeg;
   }
   summary_.parallax_px = ParallaxPercentilePx(matches_, mask_, pose);
-  summary_.translation_observable =
-      summary_.covariance.has_value() &&
-      RadToDeg(summary_.direction_sigma) <= kDirectionObservableDeg &&
-      summary_.parallax_px > kParallaxSigmas * noise_px_;
+  summary_.translation_observable = summary_.covariance.has_value() &&
+                                    RadToDeg(summary_.direction_sigma) <= kDirectionObservableDeg &&
+                                    summary_.parallax_px > kParallaxSigmas * noise_px_;
   summary_.scale_observable = summary_.scale_observable && summary_.translation_observable;
 }
 
@@ -480,10 +478,11 @@ bool RefineOptions::IsValid(std::string* error) const {
 
 std::string RefineSummary::BriefReport() const {
   char text[256];
-  std::snprintf(text, sizeof(text),
-                "%s: %d inliers, %d rounds, %d iterations, cost %.6g -> %.6g, median residual %.3f px",
-                message.c_str(), num_inliers, num_rounds, num_iterations, initial_cost, final_cost,
-                median_residual_px);
+  std::snprintf(
+      text, sizeof(text),
+      "%s: %d inliers, %d rounds, %d iterations, cost %.6g -> %.6g, median residual %.3f px",
+      message.c_str(), num_inliers, num_rounds, num_iterations, initial_cost, final_cost,
+      median_residual_px);
   return text;
 }
 

@@ -27,13 +27,13 @@ enum class RefineForm {
   kPriorDepths,  // the angle, l1 and l2 (planar: one depth less): the paper's model in full
 };
 
-const char* RefineFormName(RefineForm form);          // "full", "prior", "depths", "prior-depths"
+const char* RefineFormName(RefineForm form);  // "full", "prior", "depths", "prior-depths"
 bool ParseRefineForm(std::string_view name, RefineForm* form);
-const char* ResidualName(ResidualKind kind);          // "sampson", "angular", "algebraic"
+const char* ResidualName(ResidualKind kind);  // "sampson", "angular", "algebraic"
 bool ParseResidual(std::string_view name, ResidualKind* kind);
 
 enum class ScaleMode {
-  kAuto,   // free where the data determines it (kScaleObservableRatio), else |t| is kept
+  kAuto,  // free where the data determines it (kScaleObservableRatio), else |t| is kept
   kFree,
   kFixed,  // |t| stays as at the start
 };
@@ -51,12 +51,12 @@ struct RefineOptions {
   // Scale of the loss in units of the image noise (given, or estimated from the start); > 0.
   double loss_scale_sigmas = 3.0;
 
-  double threshold_px = 1.5;   // > 0; matches with a larger Sampson error are left out
-  int max_rounds = 5;          // >= 1; selections of inliers
-  int max_num_iterations = 50; // >= 0, a round
+  double threshold_px = 1.5;    // > 0; matches with a larger Sampson error are left out
+  int max_rounds = 5;           // >= 1; selections of inliers
+  int max_num_iterations = 50;  // >= 0, a round
   ScaleMode scale = ScaleMode::kAuto;
-  // 1-sigma image noise where it is known; else estimated (1.4826 times the median |residual| of the
-  // inliers).
+  // 1-sigma image noise where it is known; else estimated (1.4826 times the median |residual| of
+  // the inliers).
   std::optional<double> noise_px;
 
   bool IsValid(std::string* error) const;
@@ -76,17 +76,17 @@ struct RefineSummary {
   Termination termination = Termination::kNotRun;
   std::string message = "Refine was not called.";
   int num_rounds = -1;
-  int num_iterations = -1;  // of all rounds
+  int num_iterations = -1;     // of all rounds
   double initial_cost = -1.0;  // 1/2 sum rho(r^2) over the first and the last selection
   double final_cost = -1.0;
 
   int num_inliers = 0;
-  std::vector<char> inliers;        // 1 or 0 for each match, in the order of the input
-  double median_residual_px = -1.0; // median |Sampson error| of the inliers
-  double noise_px = -1.0;           // given or estimated
+  std::vector<char> inliers;         // 1 or 0 for each match, in the order of the input
+  double median_residual_px = -1.0;  // median |Sampson error| of the inliers
+  double noise_px = -1.0;            // given or estimated
 
-  // Covariance of (rotation, translation) for R <- Exp(d) R, t <- t + e over the parameters of kFull
-  // that are free: of rank 5 where scale is not observable. Empty if not determined.
+  // Covariance of (rotation, translation) for R <- Exp(d) R, t <- t + e over the parameters of
+  // kFull that are free: of rank 5 where scale is not observable. Empty if not determined.
   std::optional<Matrix6d> covariance;
   double rotation_sigma = -1.0;        // radians; -1 if there is no covariance
   double direction_sigma = -1.0;       // radians

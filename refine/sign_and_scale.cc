@@ -41,10 +41,9 @@ void ChooseSubset(const GroupedMatches& matches, double threshold_px, Subset* su
     const Rig& rig = matches.rig();
     const PinholeCamera& c1 = rig.cameras[m.camera1].intrinsics;
     const PinholeCamera& c2 = rig.cameras[m.camera2].intrinsics;
-    subset->items[subset->size++] = {MakeRayPair(rig, m), CentredPixel(c1, m.pixel1),
-                                     CentredPixel(c2, m.pixel2),
-                                     2.0 * threshold_px / std::min(c1.fx, c2.fx),
-                                     static_cast<int>(group)};
+    subset->items[subset->size++] = {
+        MakeRayPair(rig, m), CentredPixel(c1, m.pixel1), CentredPixel(c2, m.pixel2),
+        2.0 * threshold_px / std::min(c1.fx, c2.fx), static_cast<int>(group)};
   }
 }
 
@@ -72,8 +71,7 @@ struct Votes {
   bool Enough(int looked_at) const { return decided > kMinShareDecided * looked_at; }
 };
 
-Votes CountVotes(const GroupedMatches& matches, const Subset& subset, double t2,
-                 const Pose& pose) {
+Votes CountVotes(const GroupedMatches& matches, const Subset& subset, double t2, const Pose& pose) {
   Votes votes;
   VisitSubset(matches, subset, pose, [&](const LookedAt&, double r2, Cheirality cheirality) {
     if (!(r2 < t2)) return;
@@ -144,8 +142,8 @@ void ResolveSignAndScale(const GroupedMatches& matches, double threshold_px, Pos
       double score = 0.0;
       VisitSubset(matches, subset, candidate,
                   [&](const LookedAt&, double r2, Cheirality cheirality) {
-                    const bool possible = cheirality == Cheirality::kInFront ||
-                                          cheirality == Cheirality::kUndecided;
+                    const bool possible =
+                        cheirality == Cheirality::kInFront || cheirality == Cheirality::kUndecided;
                     score += possible && r2 < t2 ? r2 : t2;
                   });
       if (score < best) {

@@ -66,7 +66,8 @@ class SmallEngine::Impl {
 
   bool Minimize(const SmallEngineOptions& options, Pose* pose) {
     options_ = options;
-    const auto form = options.inverse_scale ? TranslationForm::kInverseScale : TranslationForm::kFree;
+    const auto form =
+        options.inverse_scale ? TranslationForm::kInverseScale : TranslationForm::kFree;
     if (!parameterization_.Set(RotationForm::kFree, form, *pose, Alignment(), RayPair())) {
       return false;
     }

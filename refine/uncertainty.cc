@@ -41,8 +41,7 @@ bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis,
   const Square scaled = scale.asDiagonal() * reduced * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Square> eigen(scaled);
   if (!(eigen.eigenvalues()(0) > 1e-14)) return false;
-  const Square inverse = eigen.eigenvectors() *
-                         eigen.eigenvalues().cwiseInverse().asDiagonal() *
+  const Square inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
                          eigen.eigenvectors().transpose();
   const Square unscaled = scale.asDiagonal() * inverse * scale.asDiagonal();
   *covariance = basis * unscaled * basis.transpose();
@@ -82,9 +81,7 @@ double DirectionSigma(const Matrix6d& covariance, const Eigen::Vector3d& t) {
   const double norm = t.norm();
   if (!(norm > 0)) return std::numeric_limits<double>::infinity();
   const Eigen::Matrix<double, 3, 2> across = TangentBasis(t / norm);
-  return std::sqrt(
-             (across.transpose() * covariance.block<3, 3>(3, 3) * across).trace()) /
-         norm;
+  return std::sqrt((across.transpose() * covariance.block<3, 3>(3, 3) * across).trace()) / norm;
 }
 
 double ParallaxPercentilePx(const GroupedMatches& matches, const std::vector<char>& mask,

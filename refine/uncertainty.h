@@ -36,8 +36,7 @@ Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<cha
 
 // B (B' information B)^-1 B' for the free directions B = `basis` (6 x k). False, and `covariance`
 // left alone, if the information of the free directions is singular.
-bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis,
-                       Matrix6d* covariance);
+bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis, Matrix6d* covariance);
 
 // The basis of the free rotation with t on the sphere |t| = const (5 columns), or t free (6).
 MotionBasis FullBasis(const Pose& pose, bool scale_free);
