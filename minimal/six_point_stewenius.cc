@@ -6,6 +6,7 @@
 #include <Eigen/SVD>
 
 #include "rigel/minimal/polynomial_system.h"
+#include "rigel/minimal/six_point_system.h"
 
 namespace rigel {
 namespace {
@@ -16,6 +17,10 @@ using polynomial_system::MacaulayMatrix;
 using polynomial_system::NumMonomials;
 using polynomial_system::RealSolutions;
 
+#ifndef KSCALE
+#define KSCALE 0.15
+#endif
+constexpr double kScale = KSCALE;
 constexpr int kQuadric = NumMonomials(2);
 constexpr int kQuartic = NumMonomials(4);
 constexpr int kSextic = NumMonomials(6);
@@ -54,6 +59,29 @@ Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& A) {
   return U * svd.matrixV().transpose();
 }
 
+// Newton's method on the six constraints themselves, from the rotation R.
+void AddPolished(const SixPointSystem& system, Eigen::Matrix3d* R) {
+  const auto evaluate = [&](const Eigen::Vector4d& v, SixPointSystem::Matrix64* M,
+                            Eigen::Matrix<double, 6, 3>* D) {
+    for (int k = 0; k < 6; ++k) {
+      const RayPair& rays = system.rays(k);
+      const Eigen::Vector3d g = *R * rays.ray1.x;
+      const Eigen::Vector3d arm = *R * rays.ray1.s;
+      const Eigen::Vector3d n = g.cross(rays.ray2.x);
+      M->row(k) << n.transpose(), n.dot(arm - rays.ray2.s);
+      // Of b . (g x y), b = t + w (R s_i - s_j), by the left perturbation of R.
+      const Eigen::Vector3d b = v.head<3>() + v[3] * (arm - rays.ray2.s);
+      D->row(k) = v[3] * arm.cross(n) + g.cross(rays.ray2.x.cross(b));
+    }
+  };
+  const auto update = [R](const Eigen::Vector3d& d) { *R = ExpSO3(d) * *R; };
+  SixPointSystem::Matrix64 M;
+  Eigen::Matrix<double, 6, 3> D;
+  evaluate(Eigen::Vector4d::Zero(), &M, &D);
+  Eigen::Vector4d v = NullVector(M);
+  if (PolishSixPoint(evaluate, update, &v)) system.Add(*R, v);
+}
+
 template <int kDegree, int kMaxRows, int kSize>
 int RealRotations(const double (*quartics)[kQuartic], int num_quartics,
                   const double (*sextics)[kSextic], int num_sextics, const int* leading,
@@ -83,25 +111,22 @@ int RealRotations(const double (*quartics)[kQuartic], int num_quartics,
 
 int Solve6ptStewenius(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
   solutions->clear();
+  const SixPointSystem system(matches, sample, solutions);
+  if (!system.solvable()) return 0;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (int k = 0; k < 6; ++k) {
-    const RayPair& rays = matches.rays(sample[k]);
+    const RayPair& rays = system.rays(k);
     covariance += rays.ray2.x * rays.ray1.x.transpose();
   }
-  if (!covariance.allFinite()) return 0;
   const Eigen::Matrix3d B = Basis();
   const Eigen::Matrix3d R0 = NearestRotation(covariance);
   const Eigen::Matrix3d C = B * R0;
   RayPairInBasis m[6];
   for (int k = 0; k < 6; ++k) {
-    const RayPair& rays = matches.rays(sample[k]);
+    const RayPair& rays = system.rays(k);
     m[k] = {C * rays.ray1.x, B * rays.ray2.x, C * rays.ray1.s, B * rays.ray2.s};
   }
-  const auto same = [&](int i, int j) {
-    const RayPair& a = matches.rays(sample[i]);
-    const RayPair& b = matches.rays(sample[j]);
-    return a.ray1.s == b.ray1.s && a.ray2.s == b.ray2.s;
-  };
+  const auto same = [&system](int i, int j) { return system.SameCentres(i, j); };
 
   double quartics[20][kQuartic];
   double sextics[15][kSextic];
@@ -116,6 +141,10 @@ int Solve6ptStewenius(const PreparedMatches& matches, const int* sample, Solutio
       AddBilinear(m[k].y.cross(m[a].y), m[k].x, rows[k][1]);
       AddBilinear(m[k].y, ds.cross(m[k].x), rows[k][2]);
       AddBilinear(du.cross(m[k].y), m[k].x, rows[k][2]);
+      for (auto& entry : rows[k]) {
+        for (int i = 1; i < 4; ++i) entry[i] *= kScale;
+        for (int i = 4; i < kQuadric; ++i) entry[i] *= kScale * kScale;
+      }
     }
     double minors[6][6][kQuartic] = {};
     for (int b = a + 1; b < 6; ++b) {
@@ -162,10 +191,11 @@ int Solve6ptStewenius(const PreparedMatches& matches, const int* sample, Solutio
     num_roots = RealRotations<5, 40, 20>(quartics, 10, sextics, 0, leading, 2, 0, r);
   }
   for (int k = 0; k < num_roots; ++k) {
-    const Eigen::Vector3d q = B.transpose() * Eigen::Vector3d(r[k][0], r[k][1], r[k][2]);
-    Solution& solution = solutions->Append();
-    solution.R = Eigen::Quaterniond(1.0, q[0], q[1], q[2]).normalized().toRotationMatrix() * R0;
-    solution.t.setZero();
+    const Eigen::Vector3d q = kScale * B.transpose() * Eigen::Vector3d(r[k][0], r[k][1], r[k][2]);
+    if (!q.allFinite()) continue;
+    Eigen::Matrix3d R =
+        Eigen::Quaterniond(1.0, q[0], q[1], q[2]).normalized().toRotationMatrix() * R0;
+    AddPolished(system, &R);
   }
   return solutions->size();
 }

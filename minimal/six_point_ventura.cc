@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "rigel/minimal/polynomial_system.h"
+#include "rigel/minimal/six_point_system.h"
 
 namespace rigel {
 namespace {
@@ -19,7 +20,7 @@ using polynomial_system::RealSolutions;
 using Linear = double[4];
 
 struct Row {
-  Linear entry[4];
+  Linear entry[4];  // n(r), k(r)
 };
 
 // The basis of r in which it is solved; its first axis is no likely rotation axis, so that roots
@@ -34,10 +35,12 @@ Eigen::Matrix3d Basis() {
 
 int Solve6ptVentura(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
   solutions->clear();
+  const SixPointSystem system(matches, sample, solutions);
+  if (!system.solvable()) return 0;
   const Eigen::Matrix3d B = Basis();
   Row rows[6];
   for (int m = 0; m < 6; ++m) {
-    const RayPair& rays = matches.rays(sample[m]);
+    const RayPair& rays = system.rays(m);
     const Eigen::Vector3d x = B * rays.ray1.x;
     const Eigen::Vector3d y = B * rays.ray2.x;
     const Eigen::Vector3d p = (B * rays.ray1.s).cross(x);
@@ -92,10 +95,31 @@ int Solve6ptVentura(const PreparedMatches& matches, const int* sample, Solutions
   double x[20];
   const int num_roots = roots.FindX(x);
   for (int k = 0; k < num_roots; ++k) {
-    const auto r = roots.Solution(x[k]);
-    Solution& solution = solutions->Append();
-    solution.R = ExpSO3(B.transpose() * Eigen::Vector3d(r[0], r[1], r[2]));
-    solution.t.setZero();
+    const auto start = roots.Solution(x[k]);
+    Eigen::Vector3d r(start[0], start[1], start[2]);
+    if (!r.allFinite()) continue;
+    // Newton's method on M(r) (t, w)' = 0 itself.
+    const auto evaluate = [&](const Eigen::Vector4d& v, SixPointSystem::Matrix64* M,
+                              Eigen::Matrix<double, 6, 3>* D) {
+      for (int m = 0; m < 6; ++m) {
+        for (int c = 0; c < 4; ++c) {
+          const double* e = rows[m].entry[c];
+          (*M)(m, c) = e[0] + e[1] * r[0] + e[2] * r[1] + e[3] * r[2];
+        }
+        for (int j = 0; j < 3; ++j) {
+          (*D)(m, j) = 0.0;
+          for (int c = 0; c < 4; ++c) (*D)(m, j) += rows[m].entry[c][1 + j] * v[c];
+        }
+      }
+    };
+    const auto update = [&r](const Eigen::Vector3d& d) { r += d; };
+    SixPointSystem::Matrix64 M;
+    Eigen::Matrix<double, 6, 3> D;
+    evaluate(Eigen::Vector4d::Zero(), &M, &D);
+    Eigen::Vector4d v = NullVector(M);
+    if (!PolishSixPoint(evaluate, update, &v)) continue;
+    v.head<3>() = B.transpose() * v.head<3>();
+    system.Add(ExpSO3(B.transpose() * r), v);
   }
   return solutions->size();
 }

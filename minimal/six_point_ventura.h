@@ -1,19 +1,20 @@
 // 6pt-ventura: six matches, no prior, the rotation to first order.
 //
 // With R = I + [r]x one match says (n(r), k(r)) . (t, 1) = 0, entries of degree 1 in r (paper eq.
-// b2: n = R x_i x x_j, k = x_j'R q_i + q_j'R x_i). Six of them have a solution where the 6 x 4 matrix
-// M(r) has rank 3: its fifteen 4 x 4 minors, quartics in r, vanish. They have 20 common roots.
-// Source: Ventura, Arth, Lepetit, "An Efficient Minimal Solution for Multi-Camera Motion", ICCV
-// 2015, section 4. There a polynomial of degree 20 in one unknown is expanded; here the quartics
-// give all fifteen monomials of degree 4 in terms of the twenty lower ones, which is multiplication
-// by one unknown as a 20 x 20 matrix, whose characteristic polynomial is that polynomial.
+// b2: n = R x_i x x_j, k = x_j'R q_i + q_j'R x_i). Six of them have a solution where the 6 x 4
+// matrix M(r) has rank 3: its fifteen 4 x 4 minors, quartics in r, vanish. They have 20 common
+// roots. Source: Ventura, Arth, Lepetit, "An Efficient Minimal Solution for Multi-Camera Motion",
+// ICCV 2015, section 4. There a polynomial of degree 20 in one unknown is expanded; here the
+// quartics give all fifteen monomials of degree 4 in terms of the twenty lower ones, which is
+// multiplication by one unknown as a 20 x 20 matrix, whose characteristic polynomial is that
+// polynomial.
 //
 // R is rebuilt as the exact rotation ExpSO3(r), t stays that of the linearized system, so both
 // are biased; see the test for how much.
 //
-// Intra-camera samples: r = 0, t = 0 is a root whatever the matches are, a double one if the centres
-// are on one line. It is divided out. Pure translation of such a sample is a multiple root there; it
-// is tested for directly and returned without scale.
+// Intra-camera samples: r = 0, t = 0 is a root whatever the matches are, a double one if the
+// centres are on one line. It is divided out. Pure translation of such a sample is a multiple root
+// there; it is tested for directly and returned without scale.
 //
 // Units: r in radians, t in metres. Degenerate, returns nothing: one centre in all.
 #ifndef RIGEL_MINIMAL_SIX_POINT_VENTURA_H_

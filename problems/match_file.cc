@@ -608,7 +608,9 @@ class Formatter {
       if (ParseNumber(word, &rounded) && is_exact(rounded)) return Number(rounded);
     }
     const double inf = std::numeric_limits<double>::infinity();
-    for (double below = degrees, above = degrees, k = 0; k < 4; ++k) {
+    double below = degrees;
+    double above = degrees;
+    for (int k = 0; k < 4; ++k) {
       if (is_exact(below)) return Number(below);
       if (is_exact(above)) return Number(above);
       below = std::nextafter(below, -inf);

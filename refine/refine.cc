@@ -486,6 +486,32 @@ std::string RefineSummary::BriefReport() const {
   return text;
 }
 
+std::string RefineSummary::ObservabilityReport() const {
+  char text[256];
+  if (!translation_observable) {
+    if (parallax_px >= 0 && !(parallax_px > kParallaxSigmas * noise_px)) {
+      std::snprintf(
+          text, sizeof(text),
+          "80%% of the matches move less than %.2f px besides the rotation, image noise is "
+          "%.2f px: |t| is consistent with zero",
+          parallax_px, noise_px);
+    } else if (direction_sigma >= 0) {
+      std::snprintf(text, sizeof(text), "its standard deviation is %.1f deg",
+                    RadToDeg(direction_sigma));
+    } else {
+      std::snprintf(text, sizeof(text), "the matches do not determine it");
+    }
+    return text;
+  }
+  if (!scale_observable) {
+    return "direction of translation observable, scale not (standard deviation of |t| above " +
+           std::to_string(static_cast<int>(100 * kScaleObservableRatio)) + " percent)";
+  }
+  std::snprintf(text, sizeof(text), "all observable, standard deviation of |t| %.2f percent",
+                100 * relative_scale_sigma);
+  return text;
+}
+
 RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,
                      const MotionPrior& prior, Pose* pose) {
   return Refiner(options, matches, prior).Run(pose);

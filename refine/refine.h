@@ -100,6 +100,8 @@ struct RefineSummary {
     return termination == Termination::kConverged || termination == Termination::kIterationLimit;
   }
   std::string BriefReport() const;
+  // One clause on what is and what is not observable, and by how much.
+  std::string ObservabilityReport() const;
 };
 
 // Refines `pose`, which must be near the motion. Never throws, exits or logs; on kDegenerate and

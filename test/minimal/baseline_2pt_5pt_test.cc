@@ -297,7 +297,9 @@ TEST(FivePointPlusOne, FindsTheTruthWithItsScale) {
         EXPECT_GT(solution.R.determinant(), 0.0);
         int in_front = 0;
         for (int k = 0; k < 5; ++k) {
-          in_front += CheiralityVote(solution, MakeRayPair(problem.rig, problem.matches[k])) > 0;
+          Depths depths;
+          const RayPair rays = MakeRayPair(problem.rig, problem.matches[k]);
+          in_front += TriangulateDepths(solution, rays, &depths) && depths.BothPositive();
         }
         EXPECT_GE(in_front, 3) << seed;
         if (solution.has_scale) {

@@ -1,0 +1,101 @@
+#include "rigel/minimal/six_point_system.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/QR>
+
+#include "rigel/core/cheirality.h"
+#include "rigel/core/metrics.h"
+
+namespace rigel {
+namespace {
+
+// Rank decisions on exact structure: rounding is far below, image noise far above.
+constexpr double kNegligible = 1e-10;
+// A motion of a millionth of the rig's size is no motion.
+constexpr double kNoMotion = 1e-6;
+// How far rounding moves the multiple root of a pure translation, radians.
+constexpr double kNoRotation = 1e-4;
+constexpr double kDuplicate = 1e-9;
+
+}  // namespace
+
+SixPointSystem::SixPointSystem(const PreparedMatches& matches, const int* sample,
+                               Solutions* solutions)
+    : solutions_(solutions) {
+  Eigen::Matrix<double, 6, 3> n;
+  bool finite = true;
+  for (int k = 0; k < 6; ++k) {
+    rays_[k] = &matches.rays(sample[k]);
+    const Ray& ray1 = rays_[k]->ray1;
+    const Ray& ray2 = rays_[k]->ray2;
+    finite = finite && ray1.x.allFinite() && ray2.x.allFinite();
+    all_intra_ = all_intra_ && ray1.s == ray2.s;
+    spread_ =
+        std::max({spread_, (ray1.s - rays_[0]->ray1.s).norm(), (ray2.s - rays_[0]->ray1.s).norm()});
+    n.row(k) = ray1.x.cross(ray2.x);
+  }
+  solvable_ = finite && spread_ > 0.0;
+  if (!solvable_ || !all_intra_) return;
+
+  const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 6, 3>> qr(n);
+  const auto& T = qr.matrixQR();
+  const double largest = std::abs(T(0, 0));
+  solvable_ = largest > kNegligible && std::abs(T(1, 1)) > kNegligible * largest;
+  if (!solvable_ || std::abs(T(2, 2)) > kNegligible * largest) return;
+  pure_translation_ = true;
+  Eigen::Vector3d v;
+  v[2] = 1.0;
+  v[1] = -T(1, 2) / T(1, 1);
+  v[0] = -(T(0, 1) * v[1] + T(0, 2)) / T(0, 0);
+  Eigen::Vector4d tw;
+  tw << qr.colsPermutation() * v, 0.0;
+  Add(Eigen::Matrix3d::Identity(), tw);
+}
+
+void SixPointSystem::Add(const Eigen::Matrix3d& R, const Eigen::Vector4d& v) const {
+  Solution solution;
+  solution.R = R;
+  solution.has_scale = std::abs(v[3]) > kNegligible * v.head<3>().norm();
+  if (solution.has_scale) {
+    solution.t = v.head<3>() / v[3];
+    double largest = 0.0;
+    for (const RayPair* pair : rays_) {
+      largest = std::max(largest, (R * pair->ray1.s + solution.t - pair->ray2.s).norm());
+    }
+    if (!(largest > kNoMotion * spread_)) return;
+    if (pure_translation_ && RotationError(Eigen::Matrix3d::Identity(), R) < kNoRotation) return;
+  } else {
+    solution.t = v.head<3>().normalized();
+    int votes = 0;
+    for (const RayPair* pair : rays_) {
+      const Cheirality c = TestCheirality(solution, *pair);
+      votes += (c == Cheirality::kInFront) - (c == Cheirality::kBehind);
+    }
+    if (votes < 0) solution.t = -solution.t;
+  }
+  if (!solution.AllFinite()) return;
+  for (const Solution& other : *solutions_) {
+    if ((other.R - R).cwiseAbs().maxCoeff() < kDuplicate &&
+        (other.t - solution.t).norm() < kDuplicate * (1.0 + solution.t.norm())) {
+      return;
+    }
+  }
+  solutions_->Append() = solution;
+}
+
+Eigen::Vector4d NullVector(const SixPointSystem::Matrix64& M) {
+  const Eigen::ColPivHouseholderQR<SixPointSystem::Matrix64> qr(M);
+  const auto& T = qr.matrixQR();
+  Eigen::Vector4d v;
+  v[3] = 1.0;
+  for (int r = 2; r >= 0; --r) {
+    double sum = 0.0;
+    for (int c = r + 1; c < 4; ++c) sum += T(r, c) * v[c];
+    v[r] = T(r, r) != 0.0 ? -sum / T(r, r) : 0.0;
+  }
+  return qr.colsPermutation() * v;
+}
+
+}  // namespace rigel

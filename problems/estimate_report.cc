@@ -1,0 +1,192 @@
+// Tables, JSON and CSV of rigel_estimate.
+#include <cmath>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "rigel/core/angles.h"
+#include "rigel/problems/csv.h"
+#include "rigel/problems/report.h"
+#include "rigel/problems/table.h"
+
+namespace rigel {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The end of a path that tells the pairs of a directory apart.
+std::string ShortName(const std::string& name) {
+  const size_t slash = name.find_last_of('/');
+  std::string text = slash == std::string::npos ? name : name.substr(slash + 1);
+  const std::string ending = ".matches";
+  if (text.size() > ending.size() &&
+      text.compare(text.size() - ending.size(), ending.size(), ending) == 0) {
+    text.resize(text.size() - ending.size());
+  }
+  constexpr size_t kWidth = 20;
+  return text.size() <= kWidth ? text : "..." + text.substr(text.size() - (kWidth - 3));
+}
+
+bool DirectionKnown(const MotionEstimate& e) { return e.refine.translation_observable; }
+
+// "R" rotation, "t" direction of translation, "s" scale; "-" where it is not observable.
+std::string ObservableLetters(const RefineSummary& refine) {
+  return std::string(refine.rotation_observable ? "R" : "-") +
+         (refine.translation_observable ? "t" : "-") + (refine.scale_observable ? "s" : "-");
+}
+
+Json MotionJson(const Pose& pose) {
+  const Eigen::Quaterniond q = pose.Quaternion();
+  return {{"q_wxyz", {q.w(), q.x(), q.y(), q.z()}}, {"t", {pose.t.x(), pose.t.y(), pose.t.z()}}};
+}
+
+void PutFinite(const char* key, double value, Json* object) {
+  if (std::isfinite(value) && value >= 0) (*object)[key] = value;
+}
+
+}  // namespace
+
+std::string EstimateTable(const std::vector<FramePair>& pairs,
+                          const std::vector<MotionEstimate>& estimates) {
+  Table table;
+  table.AddHeader({"pair", "status", "angle", "sd", "direction of t", "", "", "sd", "|t|", "inl",
+                   "res", "obs"});
+  table.AddHeader({"", "", "[deg]", "[deg]", "x", "y", "z", "[deg]", "[m]", "", "[px]", ""});
+  bool any_unobservable = false;
+  for (size_t k = 0; k < pairs.size(); ++k) {
+    const MotionEstimate& e = estimates[k];
+    if (!e.HasMotion()) {
+      table.AddRow({ShortName(pairs[k].name), EstimateStatusName(e.status), "-", "-", "-", "-", "-",
+                    "-", "-", "-", "-", "-"});
+      continue;
+    }
+    const bool refined = e.refine.IsSolutionUsable();
+    // Without a refinement nothing is known of what can be observed.
+    const bool direction = !refined || DirectionKnown(e);
+    const bool scale = !refined ? e.raw.has_scale : e.refine.scale_observable;
+    any_unobservable = any_unobservable || !direction || !scale;
+    const Eigen::Vector3d d = e.pose.t.normalized();
+    const auto sigma = [&](double radians) {
+      return refined && radians >= 0 ? FormatNumber(RadToDeg(radians), 3) : std::string("-");
+    };
+    table.AddRow({ShortName(pairs[k].name), EstimateStatusName(e.status),
+                  FormatNumber(RadToDeg(LogSO3(e.pose.R).norm()), 3),
+                  sigma(e.refine.rotation_sigma), direction ? FormatNumber(d.x(), 4) : "-",
+                  direction ? FormatNumber(d.y(), 4) : "-",
+                  direction ? FormatNumber(d.z(), 4) : "-",
+                  direction ? sigma(e.refine.direction_sigma) : "-",
+                  scale ? FormatNumber(e.pose.t.norm(), 4) : "-", std::to_string(e.num_inliers),
+                  refined ? FormatNumber(e.refine.median_residual_px, 3) : "-",
+                  refined ? ObservableLetters(e.refine) : "-"});
+  }
+  std::string text = table.Format();
+  if (any_unobservable) {
+    text += "\n\"-\": not observable. obs: R rotation, t direction of translation, s scale |t|.\n";
+  }
+  for (size_t k = 0; k < pairs.size(); ++k) {
+    const MotionEstimate& e = estimates[k];
+    if (e.refine.IsSolutionUsable() && !e.refine.translation_observable) {
+      text += ShortName(pairs[k].name) +
+              ": the translation direction is not observable: " + e.refine.ObservabilityReport() +
+              "\n";
+    }
+  }
+  return text;
+}
+
+std::string EstimateJson(const std::vector<FramePair>& pairs,
+                         const std::vector<MotionEstimate>& estimates,
+                         const ReportOptions& options) {
+  Json report;
+  report["format"] = "rigel-estimate 1";
+  report["options"] = Json::object();
+  for (const auto& [name, value] : options) report["options"][name] = value;
+  report["pairs"] = Json::array();
+  for (size_t k = 0; k < pairs.size(); ++k) {
+    const MotionEstimate& e = estimates[k];
+    Json entry;
+    entry["pair"] = pairs[k].name;
+    if (!pairs[k].sequence.empty()) entry["sequence"] = pairs[k].sequence;
+    entry["status"] = EstimateStatusName(e.status);
+    if (e.status != EstimateStatus::kSuccess) entry["message"] = e.message;
+    if (pairs[k].time1 && pairs[k].time2) entry["time"] = {*pairs[k].time1, *pairs[k].time2};
+    entry["matches"] = pairs[k].matches.size();
+    if (e.HasMotion()) {
+      entry["inliers"] = e.num_inliers;
+      entry["iterations"] = e.iterations;
+      entry["time_ms"] = {{"ransac", e.ransac_ms}, {"refine", e.refine_ms}};
+      entry["raw"] = MotionJson(e.raw);
+      if (e.refine.IsSolutionUsable()) {
+        const RefineSummary& r = e.refine;
+        entry["refined"] = MotionJson(e.pose);
+        entry["median_residual_px"] = r.median_residual_px;
+        entry["noise_px"] = r.noise_px;
+        entry["rotation_observable"] = r.rotation_observable;
+        entry["translation_observable"] = r.translation_observable;
+        entry["scale_observable"] = r.scale_observable;
+        if (r.covariance) {
+          PutFinite("rotation_sd_deg", RadToDeg(r.rotation_sigma), &entry);
+          if (r.translation_observable) {
+            PutFinite("translation_dir_sd_deg", RadToDeg(r.direction_sigma), &entry);
+          }
+          Json rows = Json::array();
+          for (int i = 0; i < 6; ++i) {
+            Json row = Json::array();
+            for (int j = 0; j < 6; ++j) row.push_back((*r.covariance)(i, j));
+            rows.push_back(row);
+          }
+          entry["covariance"] = rows;
+        }
+        PutFinite("relative_scale_sd", r.relative_scale_sigma, &entry);
+      }
+    }
+    report["pairs"].push_back(entry);
+  }
+  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string EstimateCsv(const std::vector<FramePair>& pairs,
+                        const std::vector<MotionEstimate>& estimates) {
+  std::string text =
+      "pair,status,time1,time2,qw,qx,qy,qz,tx,ty,tz,norm_t,matches,inliers,median_residual_px,"
+      "rotation_sd_deg,translation_dir_sd_deg,relative_scale_sd,rotation_observable,"
+      "translation_observable,scale_observable,raw_qw,raw_qx,raw_qy,raw_qz,raw_tx,raw_ty,raw_tz,"
+      "ransac_ms,refine_ms\n";
+  const auto motion = [](const Pose& pose) {
+    const Eigen::Quaterniond q = pose.Quaternion();
+    std::string cells;
+    for (const double v : {q.w(), q.x(), q.y(), q.z(), pose.t.x(), pose.t.y(), pose.t.z()}) {
+      cells += "," + CsvNumber(v);
+    }
+    return cells;
+  };
+  for (size_t k = 0; k < pairs.size(); ++k) {
+    const FramePair& pair = pairs[k];
+    const MotionEstimate& e = estimates[k];
+    text += CsvText(pair.name) + "," + CsvText(EstimateStatusName(e.status)) + "," +
+            (pair.time1 ? CsvNumber(*pair.time1) : "") + "," +
+            (pair.time2 ? CsvNumber(*pair.time2) : "");
+    if (!e.HasMotion()) {
+      // 8 cells of the motion, then the number of matches, then 17 more.
+      text += std::string(8, ',') + "," + std::to_string(pair.matches.size()) +
+              std::string(17, ',') + "\n";
+      continue;
+    }
+    const RefineSummary& r = e.refine;
+    const bool refined = r.IsSolutionUsable();
+    const auto known = [&](double value) {
+      return refined && value >= 0 ? CsvNumber(value) : std::string();
+    };
+    const auto flag = [&](bool value) { return refined ? std::string(value ? "1" : "0") : ""; };
+    text += motion(e.pose) + "," + CsvNumber(e.pose.t.norm()) + "," +
+            std::to_string(pair.matches.size()) + "," + std::to_string(e.num_inliers) + "," +
+            known(r.median_residual_px) + "," + known(RadToDeg(r.rotation_sigma)) + "," +
+            (r.translation_observable ? known(RadToDeg(r.direction_sigma)) : "") + "," +
+            known(r.relative_scale_sigma) + "," + flag(r.rotation_observable) + "," +
+            flag(r.translation_observable) + "," + flag(r.scale_observable) + motion(e.raw) + "," +
+            CsvNumber(e.ransac_ms) + "," + CsvNumber(e.refine_ms) + "\n";
+  }
+  return text;
+}
+
+}  // namespace rigel

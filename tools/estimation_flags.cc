@@ -1,0 +1,122 @@
+#include "rigel/tools/estimation_flags.h"
+
+#include <cmath>
+#include <iostream>
+
+#include <gflags/gflags.h>
+
+#include "rigel/core/angles.h"
+#include "rigel/problems/match_file.h"
+
+DEFINE_string(matches, "", "match files and directories of *.matches, comma separated");
+DEFINE_string(use, "all",
+              "which matches are used: all, intra (same camera at both times) or inter");
+DEFINE_string(
+    prior, "file",
+    "where the motion prior comes from: file, its lines; body, gravity, axis and normal are "
+    "the body's Y (no sensor at all); truth, exact, from the truth line");
+DEFINE_double(prior_noise_deg, 0,
+              "error of exactly that angle on the prior, its sign random per pair");
+DEFINE_string(prior_noise_axis, "pitch",
+              "the error turns about: pitch (body X), roll (Z) or random");
+DEFINE_double(prior_sigma_deg, 0,
+              "the prior's stated 1-sigma for --use_prior_in_refine; 0: as in the file");
+DEFINE_bool(use_prior_in_refine, false, "weigh the prior by its sigma in the refinement");
+DEFINE_string(
+    refine, "full",
+    "what the refinement frees: none (no refinement), full (rotation and translation), prior "
+    "(the prior is exact), depths (a reference match is exact), prior-depths (both)");
+DEFINE_string(residual, "sampson",
+              "sampson (pixels), angular, or algebraic (collapses to zero motion with intra-camera "
+              "matches; for comparison)");
+DEFINE_string(loss, "cauchy",
+              "robust loss of the refinement: none, huber, cauchy, tukey, truncated");
+DEFINE_double(threshold_px, 1.5,
+              "inlier threshold on the Sampson error; 3 sigma of the noise is best");
+DEFINE_double(confidence, 0.9999,
+              "RANSAC stops when a sample of inliers was drawn with this probability");
+DEFINE_int32(max_iterations, 10000, "largest number of RANSAC iterations");
+DEFINE_uint64(seed, 1, "seed of all random numbers; the same seed gives the same result");
+DEFINE_int32(threads, 1, "frame pairs estimated at the same time; the results do not depend on it");
+
+namespace rigel {
+
+bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
+  const auto wrong = [error](const std::string& flag, const std::string& value,
+                             const std::string& expected) {
+    *error = "--" + flag + "=" + value + ": expected " + expected;
+    return false;
+  };
+  EstimateOptions& estimate = options->estimate;
+  if (FLAGS_matches.empty()) {
+    *error = "--matches is missing: name match files or directories";
+    return false;
+  }
+  if (!ParseMatchUse(FLAGS_use, &options->use)) {
+    return wrong("use", FLAGS_use, "all, intra or inter");
+  }
+  if (!ParsePriorSource(FLAGS_prior, &options->prior.source)) {
+    return wrong("prior", FLAGS_prior, "file, body or truth");
+  }
+  if (!ParsePriorNoiseAxis(FLAGS_prior_noise_axis, &options->prior.noise_axis)) {
+    return wrong("prior_noise_axis", FLAGS_prior_noise_axis, "pitch, roll or random");
+  }
+  if (!std::isfinite(FLAGS_prior_noise_deg) || std::abs(FLAGS_prior_noise_deg) > 180) {
+    return wrong("prior_noise_deg", std::to_string(FLAGS_prior_noise_deg), "-180 to 180");
+  }
+  if (!(FLAGS_prior_sigma_deg >= 0) || !std::isfinite(FLAGS_prior_sigma_deg)) {
+    return wrong("prior_sigma_deg", std::to_string(FLAGS_prior_sigma_deg), "a number from 0");
+  }
+  options->prior.noise = DegToRad(FLAGS_prior_noise_deg);
+  if (FLAGS_prior_sigma_deg > 0) options->prior.sigma = DegToRad(FLAGS_prior_sigma_deg);
+  options->prior.seed = FLAGS_seed;
+
+  estimate.refine_motion = FLAGS_refine != "none";
+  if (estimate.refine_motion && !ParseRefineForm(FLAGS_refine, &estimate.refine.form)) {
+    return wrong("refine", FLAGS_refine, "none, full, prior, depths or prior-depths");
+  }
+  if (!ParseResidual(FLAGS_residual, &estimate.refine.residual)) {
+    return wrong("residual", FLAGS_residual, "sampson, angular or algebraic");
+  }
+  if (!ParseLoss(FLAGS_loss, &estimate.refine.loss)) {
+    return wrong("loss", FLAGS_loss, "none, huber, cauchy, tukey or truncated");
+  }
+  estimate.refine.use_prior = FLAGS_use_prior_in_refine;
+  estimate.ransac.threshold_px = FLAGS_threshold_px;
+  estimate.ransac.confidence = FLAGS_confidence;
+  estimate.ransac.max_iterations = FLAGS_max_iterations;
+  estimate.ransac.seed = FLAGS_seed;
+  if (!estimate.ransac.IsValid(error)) {
+    *error = "--" + *error;
+    return false;
+  }
+  if (FLAGS_threads < 1 || FLAGS_threads > 1024) {
+    return wrong("threads", std::to_string(FLAGS_threads), "1 to 1024");
+  }
+  options->num_threads = FLAGS_threads;
+  return true;
+}
+
+std::vector<FramePair> ReadPairs(const ComparisonOptions& options, bool* all_read) {
+  std::vector<std::string> errors;
+  const std::vector<std::string> paths = ListMatchFiles(FLAGS_matches, &errors);
+  *all_read = errors.empty();
+  for (const std::string& error : errors) std::cerr << error << "\n";
+  std::vector<FramePair> pairs;
+  for (const std::string& path : paths) {
+    FramePair pair;
+    std::string error;
+    if (!ReadMatchFile(path, &pair, &error) ||
+        !ApplyPriorSource(options.prior, static_cast<int>(pairs.size()), &pair, &error)) {
+      std::cerr << error << "\n";
+      *all_read = false;
+      continue;
+    }
+    SelectMatches(options.use, &pair);
+    pairs.push_back(std::move(pair));
+  }
+  if (pairs.empty()) std::cerr << "nothing to read in " << FLAGS_matches << "\n";
+  return pairs;
+}
+
+}  // namespace rigel

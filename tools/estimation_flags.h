@@ -1,0 +1,22 @@
+// The flags of rigel_estimate and rigel_compare: what is read, which prior, how it is estimated.
+#ifndef RIGEL_TOOLS_ESTIMATION_FLAGS_H_
+#define RIGEL_TOOLS_ESTIMATION_FLAGS_H_
+
+#include <string>
+#include <vector>
+
+#include "rigel/core/frame_pair.h"
+#include "rigel/problems/comparison.h"
+
+namespace rigel {
+
+// Fills `options` (but for the solvers) from the flags. False with a message if one is wrong.
+bool OptionsFromFlags(ComparisonOptions* options, std::string* error);
+
+// Reads --matches, keeps the matches that --use names and applies --prior. Every file that cannot
+// be read is told on stderr and sets *all_read to false; the others are returned.
+std::vector<FramePair> ReadPairs(const ComparisonOptions& options, bool* all_read);
+
+}  // namespace rigel
+
+#endif  // RIGEL_TOOLS_ESTIMATION_FLAGS_H_

@@ -1,0 +1,164 @@
+#include "rigel/tools/tool.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+
+#include <gflags/gflags.h>
+#include <glog/logging.h>
+
+#include "rigel/tools/version.h"
+
+// gflags leaves the process through this pointer, with code 1; it is not in a public header.
+namespace google {
+extern void (*gflags_exitfunc)(int);
+}
+
+namespace rigel {
+namespace {
+
+[[noreturn]] void ExitUsage(int) { std::exit(kExitUsage); }
+
+std::string ProgramName() { return gflags::ProgramInvocationShortName(); }
+
+// Flags of gflags, glog and other libraries are not the program's.
+std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
+  std::vector<gflags::CommandLineFlagInfo> all;
+  gflags::GetAllFlags(&all);
+  std::vector<gflags::CommandLineFlagInfo> own;
+  for (const auto& flag : all) {
+    if (flag.filename.find(RIGEL_TOOLS_FOLDER) != std::string::npos) own.push_back(flag);
+  }
+  std::sort(own.begin(), own.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  return own;
+}
+
+void PrintHelp(const std::string& usage) {
+  std::cout << usage << "\nFlags:\n";
+  for (const auto& flag : OwnFlags()) {
+    std::string head = "  --" + flag.name;
+    if (flag.type != "bool")
+      head += "=" + (flag.default_value.empty() ? "\"\"" : flag.default_value);
+    else
+      head += flag.default_value == "true" ? "  (on; --no" + flag.name + " is off)" : "  (off)";
+    std::cout << head << "\n";
+    // Wrapped at 92 columns behind an indent of 6.
+    std::string line;
+    const auto flush = [&] {
+      if (!line.empty()) std::cout << "      " << line << "\n";
+      line.clear();
+    };
+    std::string word;
+    for (const char c : flag.description + " ") {
+      if (c != ' ') {
+        word += c;
+        continue;
+      }
+      if (line.size() + word.size() + 1 > 92) flush();
+      line += (line.empty() ? "" : " ") + word;
+      word.clear();
+    }
+    flush();
+  }
+  std::cout << "\nExit code: 0 done, 1 failed, 2 wrong flag.\n";
+}
+
+}  // namespace
+
+void ParseFlags(const std::string& usage, int* argc, char*** argv) {
+  // The user of a program wants its own messages, not the libraries' log lines.
+  FLAGS_minloglevel = google::GLOG_FATAL;
+  google::InitGoogleLogging((*argv)[0]);
+  gflags::SetUsageMessage(usage);
+  gflags::SetVersionString(RIGEL_VERSION);
+  google::gflags_exitfunc = &ExitUsage;
+  for (int k = 1; k < *argc; ++k) {
+    const std::string argument = (*argv)[k];
+    if (argument == "--") break;
+    if (argument == "--help" || argument == "-help" || argument == "-h") {
+      PrintHelp(usage);
+      std::exit(kExitDone);
+    }
+    if (argument == "--version" || argument == "-version") {
+      std::cout << ProgramName() << " " << RIGEL_VERSION << "\n";
+      std::exit(kExitDone);
+    }
+  }
+  gflags::ParseCommandLineNonHelpFlags(argc, argv, true);
+  if (*argc > 1) {
+    std::exit(UsageError(std::string("unexpected argument '") + (*argv)[1] +
+                         "'; everything is a flag, written --name=value"));
+  }
+}
+
+int UsageError(const std::string& message) {
+  std::cerr << ProgramName() << ": " << message << "\n"
+            << "Try '" << ProgramName() << " --help'.\n";
+  return kExitUsage;
+}
+
+std::vector<std::pair<std::string, std::string>> FlagValues(
+    const std::vector<std::string>& without) {
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const auto& flag : OwnFlags()) {
+    if (std::find(without.begin(), without.end(), flag.name) == without.end()) {
+      values.emplace_back(flag.name, flag.current_value);
+    }
+  }
+  return values;
+}
+
+bool WriteOutput(const std::string& path, const std::string& text) {
+  if (path.empty()) return true;
+  if (path == "-") {
+    std::cout << text << std::flush;
+    if (std::cout) return true;
+    std::cerr << ProgramName() << ": stdout: cannot be written\n";
+    return false;
+  }
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (file == nullptr) {
+    std::cerr << path << ": cannot be opened for writing: " << std::strerror(errno) << "\n";
+    return false;
+  }
+  bool ok = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  // The disk may turn out to be full only here.
+  ok = std::fclose(file) == 0 && ok;
+  if (!ok) std::cerr << path << ": cannot be written: " << std::strerror(errno) << "\n";
+  return ok;
+}
+
+std::vector<std::string> SplitCommas(const std::string& text) {
+  std::vector<std::string> parts;
+  std::string part;
+  for (const char c : text + ",") {
+    if (c != ',') {
+      part += c;
+    } else if (!part.empty()) {
+      parts.push_back(part);
+      part.clear();
+    }
+  }
+  return parts;
+}
+
+Progress::Progress(std::string what, int total)
+    : what_(std::move(what)), total_(total), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  if (terminal_ && done_ > 0) std::cerr << "\r\033[K" << std::flush;
+}
+
+void Progress::Step() {
+  if (!terminal_) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++done_;
+  std::cerr << "\r" << what_ << ": " << done_ << " of " << total_ << "\033[K" << std::flush;
+}
+
+}  // namespace rigel

@@ -1,0 +1,55 @@
+// What the rigel_* programs share: flags, exit codes, output.
+//
+// Exit codes: 0 done; 1 a file could not be read or written, nothing to read, or no truth where it
+// is needed; 2 a wrong flag or value. Results go to stdout, talk to stderr.
+#ifndef RIGEL_TOOLS_TOOL_H_
+#define RIGEL_TOOLS_TOOL_H_
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace rigel {
+
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitFailed = 1;
+inline constexpr int kExitUsage = 2;
+
+// Parses the flags. `usage` is the text above the list of flags in --help. Ends the program itself
+// on
+// --help and --version (0) and on a flag that does not exist, a value that does not parse or an
+// argument that is not a flag (2).
+void ParseFlags(const std::string& usage, int* argc, char*** argv);
+
+// Prints the message and where to find help; returns kExitUsage.
+int UsageError(const std::string& message);
+
+// The program's own flags with their values, in alphabetical order, without those named.
+std::vector<std::pair<std::string, std::string>> FlagValues(
+    const std::vector<std::string>& without);
+
+// Writes to a file, or to stdout if `path` is "-"; nothing if it is empty. False with a message on
+// stderr if that fails.
+bool WriteOutput(const std::string& path, const std::string& text);
+
+// Splits at commas; empty parts are dropped.
+std::vector<std::string> SplitCommas(const std::string& text);
+
+// "what: k of n" on stderr, on a terminal only. Thread-safe.
+class Progress {
+ public:
+  Progress(std::string what, int total);
+  ~Progress();
+  void Step();
+
+ private:
+  std::string what_;
+  int total_;
+  int done_ = 0;
+  bool terminal_;
+  std::mutex mutex_;
+};
+
+}  // namespace rigel
+
+#endif  // RIGEL_TOOLS_TOOL_H_
