@@ -9,6 +9,7 @@
 
 #include "rigel/core/match.h"
 #include "rigel/core/pose.h"
+#include "rigel/core/rays.h"
 #include "rigel/core/rig.h"
 #include "rigel/minimal/score_kernel.h"
 
@@ -48,6 +49,23 @@ class GroupedMatches {
   // the rest is not looked at: the value returned is then above `bound`, but not the score.
   double Score(const Pose& pose, double threshold_px, double bound, int* num_inliers) const;
 
+  // The same where a match that lies behind a camera counts as an outlier too. An outlier far from
+  // where its point could be has much leverage, and half of those that an estimate could bend
+  // to would lie behind a camera. Never below Score().
+  double ScoreInFront(const Pose& pose, double threshold_px, double bound, int* num_inliers) const;
+
+  // 1 for matches of a Sampson error below the threshold that do not lie behind a camera, else 0,
+  // in grouped order; returns their number. `errors` gets the squared Sampson errors. Both are
+  // resized.
+  int SelectInliers(const Pose& pose, double threshold_px, std::vector<double>* errors,
+                    std::vector<char>* inliers) const;
+
+  // The rays of the match at grouped position k in the body frames.
+  const RayPair& rays(int k) const { return rays_[k]; }
+
+  // A sine of parallax in the match's group that noise of this threshold cannot make.
+  double DecidedParallax(const MatchGroup& group, double threshold_px) const;
+
   // Squared Sampson errors in grouped order, pixels^2; `errors` is resized.
   void SquaredErrors(const Pose& pose, std::vector<double>* errors) const;
 
@@ -56,6 +74,7 @@ class GroupedMatches {
   std::vector<MatchGroup> groups_;
   std::vector<Match> matches_;
   std::vector<int> original_;
+  std::vector<RayPair> rays_;
   std::vector<double> pixels_;  // x1 of all, then y1, x2, y2
 };
 

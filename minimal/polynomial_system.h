@@ -272,14 +272,15 @@ class MacaulayMatrix {
 template <int kMaxSize>
 class RealSolutions {
  public:
-  // Destroys `action`. `zero_multiplicity`: of a solution at x = 0 that is known and not wanted.
-  RealSolutions(ActionMatrix<kMaxSize>* action, int zero_multiplicity)
-      : a_(action->entries), n_(action->size), zero_multiplicity_(zero_multiplicity) {
+  // Destroys `action`.
+  explicit RealSolutions(ActionMatrix<kMaxSize>* action) : a_(action->entries), n_(action->size) {
     ReduceToHessenberg();
   }
 
-  // Writes up to kMaxSize values of x.
-  int FindX(double* x);
+  // Appends the values of x to the `count` in `x`, up to kMaxSize in all; returns their new number.
+  // The characteristic polynomial is expanded about `centre`, which finds the roots near it best;
+  // only those nearer than 1 if `near_only`.
+  int FindX(double centre, bool near_only, double* x, int count) const;
 
   // The solution of the given x, to the accuracy of x.
   std::array<double, 3> Solution(double x) {
@@ -353,8 +354,8 @@ class RealSolutions {
     }
   }
 
-  // det(x I - H): the same recurrence in polynomials, c[0..n] ascending.
-  void CharacteristicPolynomial(double* c) const {
+  // det((x + centre) I - H): the same recurrence in polynomials, c[0..n] ascending.
+  void CharacteristicPolynomial(double centre, double* c) const {
     double p[kMaxSize][kMaxSize];
     p[n_ - 1][0] = 1.0;
     for (int k = n_ - 1; k >= 0; --k) {
@@ -362,7 +363,7 @@ class RealSolutions {
       out[0] = 0.0;
       for (int i = 0; i < n_ - k; ++i) out[i + 1] = p[k][i];
       for (int j = k; j < n_; ++j) {
-        const double h = a_[k][j];
+        const double h = a_[k][j] - (j == k ? centre : 0.0);
         for (int i = 0; i < n_ - j; ++i) out[i] -= h * p[j][i];
       }
     }
@@ -370,7 +371,6 @@ class RealSolutions {
 
   double (*a_)[kMaxSize];
   int n_;
-  int zero_multiplicity_;
   double v_[kMaxSize];
 };
 
@@ -385,10 +385,10 @@ class RootFinder {
     std::copy(c, c + n + 1, c_);
   }
 
-  int Find(double* roots) {
+  int Find(bool near_only, double* roots) {
     count_ = 0;
     double piece[kMax + 1];
-    for (int side = 0; side < 4; ++side) {
+    for (int side = 0; side < (near_only ? 2 : 4); ++side) {
       const bool reversed = side >= 2;
       const bool mirrored = side % 2 == 1;
       for (int k = 0; k <= n_; ++k) {
@@ -488,10 +488,13 @@ class RootFinder {
 };
 
 template <int kMaxSize>
-int RealSolutions<kMaxSize>::FindX(double* x) {
+int RealSolutions<kMaxSize>::FindX(double centre, bool near_only, double* x, int count) const {
   double c[kMaxSize + 1];
-  CharacteristicPolynomial(c);
-  return RootFinder<kMaxSize>(c + zero_multiplicity_, n_ - zero_multiplicity_).Find(x);
+  double roots[kMaxSize];
+  CharacteristicPolynomial(centre, c);
+  const int num_roots = RootFinder<kMaxSize>(c, n_).Find(near_only, roots);
+  for (int k = 0; k < num_roots && count < kMaxSize; ++k) x[count++] = roots[k] + centre;
+  return count;
 }
 
 }  // namespace rigel::polynomial_system

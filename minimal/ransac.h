@@ -48,8 +48,10 @@ struct RansacResult {
 //   num_data(), sample_size()
 //   Draw(Random*, int*)        false if no sample can be drawn
 //   MinimalSolver(sample, Solutions*)   number of solutions
-//   Score(model, bound, int* inliers)   lower is better; may stop above `bound`
+//   QuickScore(model, bound)   not above Score() of the model Admit() makes of it; may stop early
+//                              above `bound`
 //   Admit(Model*)              false if physically impossible; may change the sign of t
+//   Score(model, bound, int* inliers)   lower is better; may stop early above `bound`
 //   LocalOptimize(Model*)      false: unchanged
 template <class S, class = void>
 struct IsRansacSolver : std::false_type {};
@@ -63,6 +65,8 @@ struct IsRansacSolver<
                     std::declval<const S&>().Draw(std::declval<Random*>(), std::declval<int*>())}),
                 decltype(int{std::declval<const S&>().MinimalSolver(
                     std::declval<const int*>(), std::declval<typename S::Solutions*>())}),
+                decltype(double{std::declval<const S&>().QuickScore(
+                    std::declval<const typename S::Model&>(), 0.0)}),
                 decltype(double{std::declval<const S&>().Score(
                     std::declval<const typename S::Model&>(), 0.0, std::declval<int*>())}),
                 decltype(bool{std::declval<const S&>().Admit(std::declval<typename S::Model*>())}),
@@ -99,16 +103,12 @@ RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOp
     for (int k = 0; k < static_cast<int>(solutions->size()); ++k) {
       ++result.hypotheses;
       Model model = (*solutions)[k];
+      // Also false for NaN. The quick score never rejects a winner.
+      if (!(solver.QuickScore(model, result.minimal_score) < result.minimal_score)) continue;
+      if (!solver.Admit(&model)) continue;
       int inliers = 0;
       double score = solver.Score(model, result.minimal_score, &inliers);
-      // Also false for NaN.
       if (!(score < result.minimal_score)) continue;
-      const Model scored = model;
-      if (!solver.Admit(&model)) continue;
-      if (!(model == scored)) {
-        score = solver.Score(model, result.minimal_score, &inliers);
-        if (!(score < result.minimal_score)) continue;
-      }
       result.found = true;
       result.best_minimal = model;
       result.minimal_score = score;

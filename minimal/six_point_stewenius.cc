@@ -85,7 +85,7 @@ void AddPolished(const SixPointSystem& system, Eigen::Matrix3d* R) {
 template <int kDegree, int kMaxRows, int kSize>
 int RealRotations(const double (*quartics)[kQuartic], int num_quartics,
                   const double (*sextics)[kSextic], int num_sextics, const int* leading,
-                  int num_degrees, int zero_multiplicity, double (*r)[3]) {
+                  int num_degrees, const double* centre, double (*r)[3]) {
   ActionMatrix<kSize> action;
   {
     MacaulayMatrix<kDegree, kMaxRows> macaulay;
@@ -97,9 +97,10 @@ int RealRotations(const double (*quartics)[kQuartic], int num_quartics,
     }
     if (!macaulay.Reduce(leading, num_degrees, &action)) return 0;
   }
-  RealSolutions<kSize> roots(&action, zero_multiplicity);
+  RealSolutions<kSize> roots(&action);
   double x[kSize];
-  const int num_roots = roots.FindX(x);
+  int num_roots = roots.FindX(0.0, false, x, 0);
+  if (centre) num_roots = roots.FindX(*centre, true, x, num_roots);
   for (int k = 0; k < num_roots; ++k) {
     const auto solution = roots.Solution(x[k]);
     for (int i = 0; i < 3; ++i) r[k][i] = solution[i];
@@ -172,23 +173,27 @@ int Solve6ptStewenius(const PreparedMatches& matches, const int* sample, Solutio
       }
     }
   }
+  // For intra-camera samples a cluster of solutions surrounds R = I; where that is, in x.
+  const Eigen::Quaterniond identity(R0.transpose());
+  const double identity_x = (B * identity.vec())[0] / (identity.w() * kScale);
+  const double* centre = system.all_intra() ? &identity_x : nullptr;
   double r[64][3];
   int num_roots = 0;
   if (num_quartics == 0) {
     const int leading[] = {35, 21};
-    num_roots = RealRotations<7, 60, 64>(quartics, 0, sextics, num_sextics, leading, 2, 0, r);
+    num_roots = RealRotations<7, 60, 64>(quartics, 0, sextics, num_sextics, leading, 2, centre, r);
   } else if (num_quartics == 1) {
     const int leading[] = {36, 24, 3, 1};
-    num_roots = RealRotations<7, 68, 56>(quartics, 1, sextics, num_sextics, leading, 4, 0, r);
+    num_roots = RealRotations<7, 68, 56>(quartics, 1, sextics, num_sextics, leading, 4, centre, r);
   } else if (num_quartics == 2) {
     const int leading[] = {36, 28, 6, 2};
-    num_roots = RealRotations<7, 76, 48>(quartics, 2, sextics, num_sextics, leading, 4, 0, r);
+    num_roots = RealRotations<7, 76, 48>(quartics, 2, sextics, num_sextics, leading, 4, centre, r);
   } else if (num_quartics == 4) {
     const int leading[] = {36, 28, 12, 4};
-    num_roots = RealRotations<7, 104, 40>(quartics, 4, sextics, num_sextics, leading, 4, 0, r);
+    num_roots = RealRotations<7, 104, 40>(quartics, 4, sextics, num_sextics, leading, 4, centre, r);
   } else if (num_quartics == 10) {
     const int leading[] = {21, 15};
-    num_roots = RealRotations<5, 40, 20>(quartics, 10, sextics, 0, leading, 2, 0, r);
+    num_roots = RealRotations<5, 40, 20>(quartics, 10, sextics, 0, leading, 2, centre, r);
   }
   for (int k = 0; k < num_roots; ++k) {
     const Eigen::Vector3d q = kScale * B.transpose() * Eigen::Vector3d(r[k][0], r[k][1], r[k][2]);

@@ -91,9 +91,9 @@ int Solve6ptVentura(const PreparedMatches& matches, const int* sample, Solutions
   const int leading[1] = {15};
   ActionMatrix<20> action;
   if (!macaulay.Reduce(leading, 1, &action)) return 0;
-  RealSolutions<20> roots(&action, 0);
+  RealSolutions<20> roots(&action);
   double x[20];
-  const int num_roots = roots.FindX(x);
+  const int num_roots = roots.FindX(0.0, false, x, 0);
   for (int k = 0; k < num_roots; ++k) {
     const auto start = roots.Solution(x[k]);
     Eigen::Vector3d r(start[0], start[1], start[2]);

@@ -48,8 +48,8 @@ void PutFinite(const char* key, double value, Json* object) {
 
 std::string EstimateTable(const std::vector<FramePair>& pairs,
                           const std::vector<MotionEstimate>& estimates) {
-  Table table;
-  table.AddHeader({"pair", "status", "angle", "sd", "direction of t", "", "", "sd", "|t|", "inl",
+  Table table(1);
+  table.AddHeader({"pair", "status", "angle", "sd", "direction", "of t", "", "sd", "|t|", "inl",
                    "res", "obs"});
   table.AddHeader({"", "", "[deg]", "[deg]", "x", "y", "z", "[deg]", "[m]", "", "[px]", ""});
   bool any_unobservable = false;
@@ -81,14 +81,14 @@ std::string EstimateTable(const std::vector<FramePair>& pairs,
   }
   std::string text = table.Format();
   if (any_unobservable) {
-    text += "\n\"-\": not observable. obs: R rotation, t direction of translation, s scale |t|.\n";
+    text +=
+        "\n\"-\": not observable, as the translation direction where |t| is consistent with zero.\n"
+        "obs: R rotation, t direction of translation, s scale |t|.\n";
   }
   for (size_t k = 0; k < pairs.size(); ++k) {
     const MotionEstimate& e = estimates[k];
     if (e.refine.IsSolutionUsable() && !e.refine.translation_observable) {
-      text += ShortName(pairs[k].name) +
-              ": the translation direction is not observable: " + e.refine.ObservabilityReport() +
-              "\n";
+      text += ShortName(pairs[k].name) + ": " + e.refine.ObservabilityReport() + "\n";
     }
   }
   return text;

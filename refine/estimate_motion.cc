@@ -10,17 +10,10 @@
 namespace rigel {
 namespace {
 
-// A hypothesis; equality tells RANSAC whether Admit() changed it.
-struct Hypothesis : Solution {
-  Hypothesis() = default;
-  Hypothesis(const Solution& solution) : Solution(solution) {}  // NOLINT: a plain wrapper
-  bool operator==(const Hypothesis& other) const { return R == other.R && t == other.t; }
-};
-
 // The solver concept of ransac.h for a frame pair and a solver of the catalogue.
 class FramePairSolver {
  public:
-  using Model = Hypothesis;
+  using Model = Solution;
   using Solutions = rigel::Solutions;
 
   FramePairSolver(const SolverInfo& solver, const GroupedMatches& matches,
@@ -45,8 +38,13 @@ class FramePairSolver {
   int MinimalSolver(const int* sample, Solutions* solutions) const {
     return solver_.solve(prepared_, sample, solutions);
   }
+  // Does not look at depths, which only add to the score; the sign of t matters little to it.
+  double QuickScore(const Model& model, double bound) const {
+    int inliers = 0;
+    return matches_.Score(model, threshold_px_, bound, &inliers);
+  }
   double Score(const Model& model, double bound, int* inliers) const {
-    return matches_.Score(model, threshold_px_, bound, inliers);
+    return matches_.ScoreInFront(model, threshold_px_, bound, inliers);
   }
 
   bool Admit(Model* model) const {
@@ -59,7 +57,8 @@ class FramePairSolver {
     options.inverse_scale = intra_only_ || !model->has_scale;
     Model optimized = *model;
     if (options.inverse_scale) ResolveSignAndScale(matches_, threshold_px_, &optimized);
-    if (!engine_.Minimize(options, &optimized) || !Admit(&optimized)) return false;
+    matches_.SelectInliers(optimized, threshold_px_, &squared_errors_, &inliers_);
+    if (!engine_.Minimize(options, inliers_, &optimized) || !Admit(&optimized)) return false;
     *model = optimized;
     return true;
   }
@@ -72,6 +71,8 @@ class FramePairSolver {
   EpipolarResiduals residuals_;
   mutable SmallEngine engine_;
   double threshold_px_;
+  mutable std::vector<double> squared_errors_;
+  mutable std::vector<char> inliers_;
   bool intra_only_ = true;  // such matches hardly determine the scale
 };
 
@@ -139,7 +140,7 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
   const GroupedMatches matches(pair.rig, pair.matches);
   const FramePairSolver problem(solver, matches, alignment, options.ransac.threshold_px);
   Solutions solutions;
-  const RansacResult<Hypothesis> ransac = Ransac(problem, options.ransac, &solutions);
+  const RansacResult<Solution> ransac = Ransac(problem, options.ransac, &solutions);
   estimate.ransac_ms = MillisecondsSince(ransac_start);
   estimate.iterations = ransac.iterations;
   estimate.hypotheses = ransac.hypotheses;

@@ -169,7 +169,7 @@ class Refiner {
   const EpipolarResiduals residuals_;
   Alignment alignment_;
   std::vector<double> squared_errors_;
-  std::vector<char> mask_;  // grouped order
+  std::vector<char> mask_, previous_mask_;  // grouped order
   int num_inliers_ = 0;
   double noise_px_ = 1.0;
   bool scale_free_ = true;
@@ -184,18 +184,9 @@ bool Refiner::Fail(Termination termination, const std::string& message) {
 
 // True if the selection changed.
 bool Refiner::SelectInliers(const Pose& pose) {
-  matches_.SquaredErrors(pose, &squared_errors_);
-  const double t2 = options_.threshold_px * options_.threshold_px;
-  bool changed = mask_.size() != squared_errors_.size();
-  mask_.resize(squared_errors_.size());
-  num_inliers_ = 0;
-  for (size_t k = 0; k < mask_.size(); ++k) {
-    const char inlier = squared_errors_[k] < t2 ? 1 : 0;
-    changed = changed || inlier != mask_[k];
-    mask_[k] = inlier;
-    num_inliers_ += inlier;
-  }
-  return changed;
+  previous_mask_ = mask_;
+  num_inliers_ = matches_.SelectInliers(pose, options_.threshold_px, &squared_errors_, &mask_);
+  return mask_ != previous_mask_;
 }
 
 void Refiner::EstimateNoise() {
@@ -275,7 +266,7 @@ bool Refiner::ChooseReference(const Pose& pose, RayPair* reference) const {
   const double limit = std::max(summary_.median_residual_px, 1e-9);
   for (int k = 0; k < matches_.size(); ++k) {
     if (!mask_[k] || squared_errors_[k] > limit * limit) continue;
-    const RayPair rays = MakeRayPair(matches_.rig(), matches_.matches()[k]);
+    const RayPair& rays = matches_.rays(k);
     const double parallax = (pose.R * rays.ray1.x).cross(rays.ray2.x).norm();
     if (parallax > best) {
       best = parallax;
@@ -409,6 +400,7 @@ RefineSummary Refiner::Run(Pose* pose) {
   summary_.num_rounds = 0;
   summary_.num_iterations = 0;
   Pose result = *pose;
+  ResolveSign(matches_, options_.threshold_px, &result);
   SelectInliers(result);
   EstimateNoise();
   if (SearchesScale(result)) {
@@ -492,8 +484,7 @@ std::string RefineSummary::ObservabilityReport() const {
     if (parallax_px >= 0 && !(parallax_px > kParallaxSigmas * noise_px)) {
       std::snprintf(
           text, sizeof(text),
-          "80%% of the matches move less than %.2f px besides the rotation, image noise is "
-          "%.2f px: |t| is consistent with zero",
+          "|t| is consistent with zero: 80%% of the matches move < %.2f px, noise %.2f px",
           parallax_px, noise_px);
     } else if (direction_sigma >= 0) {
       std::snprintf(text, sizeof(text), "its standard deviation is %.1f deg",

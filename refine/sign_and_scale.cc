@@ -42,8 +42,8 @@ void ChooseSubset(const GroupedMatches& matches, double threshold_px, Subset* su
     const PinholeCamera& c1 = rig.cameras[m.camera1].intrinsics;
     const PinholeCamera& c2 = rig.cameras[m.camera2].intrinsics;
     subset->items[subset->size++] = {
-        MakeRayPair(rig, m), CentredPixel(c1, m.pixel1), CentredPixel(c2, m.pixel2),
-        2.0 * threshold_px / std::min(c1.fx, c2.fx), static_cast<int>(group)};
+        matches.rays(k), CentredPixel(c1, m.pixel1), CentredPixel(c2, m.pixel2),
+        matches.DecidedParallax(matches.groups()[group], threshold_px), static_cast<int>(group)};
   }
 }
 

@@ -50,6 +50,11 @@ class SmallEngine::Impl {
     const int n = residuals_.size();
     for (int k = 0; k < n; ++k) {
       double* row = jacobian != nullptr ? jacobian + k : nullptr;
+      if (!(*mask_)[k]) {
+        r[k] = 0.0;
+        for (int m = 0; m < 6 && row != nullptr; ++m) row[m * n] = 0.0;
+        continue;
+      }
       const double value = residuals_.Evaluate(groups_, k, 6, row, n);
       const double s = value * value;
       const double rho = LossValue(options_.loss, options_.loss_scale, s);
@@ -64,8 +69,9 @@ class SmallEngine::Impl {
     return true;
   }
 
-  bool Minimize(const SmallEngineOptions& options, Pose* pose) {
+  bool Minimize(const SmallEngineOptions& options, const std::vector<char>& mask, Pose* pose) {
     options_ = options;
+    mask_ = &mask;
     const auto form =
         options.inverse_scale ? TranslationForm::kInverseScale : TranslationForm::kFree;
     if (!parameterization_.Set(RotationForm::kFree, form, *pose, Alignment(), RayPair())) {
@@ -87,6 +93,7 @@ class SmallEngine::Impl {
  private:
   const EpipolarResiduals& residuals_;
   SmallEngineOptions options_;
+  const std::vector<char>* mask_ = nullptr;
   MotionParameterization parameterization_;
   mutable MotionBasis basis_;
   mutable std::vector<GroupLinearization> groups_;
@@ -97,8 +104,9 @@ SmallEngine::SmallEngine(const EpipolarResiduals& residuals)
     : impl_(std::make_unique<Impl>(residuals)) {}
 SmallEngine::~SmallEngine() = default;
 
-bool SmallEngine::Minimize(const SmallEngineOptions& options, Pose* pose) {
-  return impl_->Minimize(options, pose);
+bool SmallEngine::Minimize(const SmallEngineOptions& options, const std::vector<char>& mask,
+                           Pose* pose) {
+  return impl_->Minimize(options, mask, pose);
 }
 
 }  // namespace rigel

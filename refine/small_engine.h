@@ -4,6 +4,7 @@
 #define RIGEL_REFINE_SMALL_ENGINE_H_
 
 #include <memory>
+#include <vector>
 
 #include "rigel/core/pose.h"
 #include "rigel/refine/epipolar_residuals.h"
@@ -29,8 +30,9 @@ class SmallEngine {
   SmallEngine(const SmallEngine&) = delete;
   SmallEngine& operator=(const SmallEngine&) = delete;
 
-  // False, and `pose` unchanged, if no step lowers the cost or the result is not finite.
-  bool Minimize(const SmallEngineOptions& options, Pose* pose);
+  // Over the matches with mask[k] != 0 (grouped order; as many as the residuals). False, and `pose`
+  // unchanged, if no step lowers the cost or the result is not finite.
+  bool Minimize(const SmallEngineOptions& options, const std::vector<char>& mask, Pose* pose);
 
  private:
   class Impl;
