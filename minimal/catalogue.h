@@ -8,6 +8,7 @@
 
 #include "rigel/core/prior.h"
 #include "rigel/minimal/prepared_matches.h"
+#include "rigel/minimal/sampler.h"
 #include "rigel/minimal/solutions.h"
 
 namespace rigel {
@@ -24,6 +25,7 @@ struct SolverInfo {
   PriorKind prior;
   int max_solutions;
   bool exact;  // finds the truth at any rotation angle, noise-free
+  SampleKind sampling;
   SolveFunction solve;
   const char* source;  // one line: publication and equations
 };

@@ -102,15 +102,36 @@ inline double BracketedNewton(const double* c, double low, double high, bool low
   return x;
 }
 
+// The power of two next to |a / b|^(1/n), within 2^-60 and 2^60; 1 if either is zero.
+template <int n>
+inline double PowerOfTwoRoot(double a, double b) {
+  if (a == 0.0 || b == 0.0) return 1.0;
+  int exponent_a = 0;
+  int exponent_b = 0;
+  std::frexp(a, &exponent_a);
+  std::frexp(b, &exponent_b);
+  return std::ldexp(1.0, std::clamp((exponent_a - exponent_b) / n, -60, 60));
+}
+
+// 1 / C(N, j).
+template <int N>
+struct InverseBinomials {
+  double value[N + 1] = {};
+  constexpr InverseBinomials() {
+    double binomial = 1.0;
+    for (int j = 0; j <= N; ++j) {
+      value[j] = 1.0 / binomial;
+      binomial = binomial * (N - j) / (j + 1);
+    }
+  }
+};
+
 // Bernstein coefficients on (0, 1) of the polynomial c; the last one is p(1) = `at_one`.
 template <int N>
 inline void BernsteinOnUnitInterval(const double* c, double at_one, double* b) {
   // b_k = sum_j C(k, j) / C(N, j) c_j, by running sums.
-  double binomial = 1.0;
-  for (int j = 0; j <= N; ++j) {
-    b[j] = c[j] / binomial;
-    binomial = binomial * (N - j) / (j + 1);
-  }
+  constexpr InverseBinomials<N> kInverse;
+  for (int j = 0; j <= N; ++j) b[j] = c[j] * kInverse.value[j];
   for (int j = 1; j <= N; ++j) {
     for (int k = N; k >= j; --k) b[k] += b[k - 1];
   }
@@ -273,6 +294,18 @@ int RealRoots(const double* c, double* roots) {
     return count;
   }
 
+  // Cut at a typical root instead of at 1: x = scale y, a power of two, so that nothing is rounded.
+  // The leading root is left out of the mean, since it is often far off (a solver's polynomials
+  // have a group of roots of the size of the parallax and one beyond).
+  const double scale = polynomial_internal::PowerOfTwoRoot<N - 1>(c[0], c[N - 1]);
+  double scaled[N + 1];
+  double power = 1.0;
+  for (int k = 0; k <= N; ++k) {
+    scaled[k] = c[k] * power;
+    power *= scale;
+  }
+  c = scaled;
+
   // Both pieces that meet at 1 (or -1) must see the same sign there.
   double at_one = 0.0;
   double at_minus_one = 0.0;
@@ -282,21 +315,25 @@ int RealRoots(const double* c, double* roots) {
   }
   double piece[N + 1];
   for (int side = 0; side < 4; ++side) {
-    const bool reversed = side >= 2;
-    const bool mirrored = side % 2 == 1;
+    const bool reversed = side % 2 == 1;
+    const bool mirrored = side >= 2;
     for (int k = 0; k <= N; ++k) {
       const double value = reversed ? c[N - k] : c[k];
-      piece[k] = mirrored && k % 2 == 1 ? -value : value;
+      piece[k] = mirrored && (reversed ? N - k : k) % 2 == 1 ? -value : value;
     }
-    double end = mirrored ? at_minus_one : at_one;
-    if (reversed && mirrored && N % 2 == 1) end = -end;
+    // Descartes on the whole half line: no sign variation, no root on either piece.
+    if (!reversed && polynomial_internal::SignVariations<N>(piece) == 0) {
+      ++side;
+      continue;
+    }
+    const double end = mirrored ? at_minus_one : at_one;
     double found[N + 1];
     const int num_found = polynomial_internal::RootsInUnitInterval<N>(piece, end, found);
     for (int k = 0; k < num_found && count < N; ++k) {
       const double x = mirrored ? -found[k] : found[k];
       // 1 itself is found by the inner piece.
       if (reversed && found[k] == 1.0) continue;
-      roots[count++] = reversed ? 1.0 / x : x;
+      roots[count++] = scale * (reversed ? 1.0 / x : x);
     }
   }
   return count;

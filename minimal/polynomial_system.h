@@ -282,6 +282,23 @@ class RealSolutions {
   // only those nearer than 1 if `near_only`.
   int FindX(double centre, bool near_only, double* x, int count) const;
 
+  // The root x of the characteristic polynomial by the secant method on the matrix itself, which
+  // knows roots in a cluster better than the coefficients do.
+  double Refine(double x) {
+    double last = x + 1e-7 * (0.01 + std::abs(x));
+    double last_value = Determinant(last);
+    for (int k = 0; k < 4; ++k) {
+      const double value = Determinant(x);
+      const double step = value * (last - x) / (last_value - value);
+      if (!(std::abs(step) < 0.05 * (0.1 + std::abs(x)))) break;
+      last = x;
+      last_value = value;
+      x -= step;
+      if (std::abs(step) < 1e-12 * (0.01 + std::abs(x))) break;
+    }
+    return x;
+  }
+
   // The solution of the given x, to the accuracy of x.
   std::array<double, 3> Solution(double x) {
     EvaluateVector(x);
@@ -352,6 +369,14 @@ class RealSolutions {
       for (; j < n_; ++j) sum[0] += a_[k][j] * v_[j];
       v_[k - 1] = x * v_[k] - ((sum[0] + sum[1]) + (sum[2] + sum[3]));
     }
+  }
+
+  // det(x I - H).
+  double Determinant(double x) {
+    EvaluateVector(x);
+    double value = x * v_[0];
+    for (int k = 0; k < n_; ++k) value -= a_[0][k] * v_[k];
+    return value;
   }
 
   // det((x + centre) I - H): the same recurrence in polynomials, c[0..n] ascending.

@@ -1,39 +1,93 @@
 #include "rigel/minimal/sampler.h"
 
 namespace rigel {
+namespace {
 
-bool Sampler::Draw(int size, Random* random, int* sample) const {
-  if (num_matches_ < size || size < 1) return false;
-  // Sorted copies of what is taken, so that each draw from the remaining ones needs no retry: the
-  // r-th free index is r plus the number of taken ones at or below it.
-  int taken[64];
-  int num_taken = 0;
-  const auto take = [&](int index) {
-    int k = num_taken++;
-    for (; k > 0 && taken[k - 1] > index; --k) taken[k] = taken[k - 1];
-    taken[k] = index;
-  };
+constexpr int kMaxSample = 64;
 
-  sample[0] = random->Index(num_matches_);
-  take(sample[0]);
-  int drawn = 1;
-  if (groups_.size() > 1 && size > 1) {
-    for (const MatchGroup& group : groups_) {
-      if (sample[0] < group.begin || sample[0] >= group.begin + group.size) continue;
-      int r = random->Index(num_matches_ - group.size);
-      if (r >= group.begin) r += group.size;
-      sample[1] = r;
-      take(r);
-      drawn = 2;
-      break;
+// Draws distinct indices without a retry: the r-th free index is r plus the number of taken ones at
+// or below it.
+class DistinctDraw {
+ public:
+  // From [begin, begin + size); at least one of them must be free.
+  int Draw(int begin, int size, Random* random) {
+    int free = size;
+    for (int k = 0; k < num_taken_; ++k) {
+      free -= taken_[k] >= begin && taken_[k] < begin + size ? 1 : 0;
+    }
+    int index = begin + random->Index(free);
+    for (int k = 0; k < num_taken_; ++k) {
+      if (taken_[k] >= begin && taken_[k] <= index) ++index;
+    }
+    Take(index);
+    return index;
+  }
+
+ private:
+  void Take(int index) {
+    int k = num_taken_++;
+    for (; k > 0 && taken_[k - 1] > index; --k) taken_[k] = taken_[k - 1];
+    taken_[k] = index;
+  }
+
+  int taken_[kMaxSample];  // ascending
+  int num_taken_ = 0;
+};
+
+const MatchGroup& GroupOf(const std::vector<MatchGroup>& groups, int index) {
+  size_t g = 0;
+  while (index >= groups[g].begin + groups[g].size) ++g;
+  return groups[g];
+}
+
+}  // namespace
+
+Sampler::Sampler(const std::vector<MatchGroup>& groups, SampleKind kind, int sample_size)
+    : groups_(groups), kind_(kind), sample_size_(sample_size) {
+  for (const MatchGroup& group : groups) num_matches_ += group.size;
+  const int of_one_pair = kind == SampleKind::kOnePairPlusOne ? sample_size - 1 : sample_size;
+  for (const MatchGroup& group : groups) {
+    if (kind == SampleKind::kOneCamera && group.camera1 != group.camera2) continue;
+    if (group.size < of_one_pair) continue;
+    allowed_.push_back(group);
+    num_allowed_ += group.size;
+  }
+  can_draw_ = sample_size >= 1 && sample_size <= kMaxSample && num_matches_ >= sample_size &&
+              (kind == SampleKind::kSpread || num_allowed_ > 0);
+}
+
+bool Sampler::Draw(Random* random, int* sample) const {
+  if (!can_draw_) return false;
+  DistinctDraw distinct;
+  int drawn = 0;
+  if (kind_ == SampleKind::kSpread) {
+    sample[drawn++] = distinct.Draw(0, num_matches_, random);
+    if (groups_.size() > 1 && sample_size_ > 1) {
+      // Any match outside the first one's group.
+      const MatchGroup& group = GroupOf(groups_, sample[0]);
+      const int before = group.begin;
+      const int after = num_matches_ - group.begin - group.size;
+      sample[drawn++] = random->Index(before + after) < before
+                            ? distinct.Draw(0, before, random)
+                            : distinct.Draw(group.begin + group.size, after, random);
+    }
+  } else {
+    // A camera pair, with a probability of its number of matches.
+    int index = random->Index(num_allowed_);
+    size_t g = 0;
+    while (index >= allowed_[g].size) index -= allowed_[g++].size;
+    const MatchGroup& group = allowed_[g];
+    const int of_one_pair = kind_ == SampleKind::kOnePairPlusOne ? sample_size_ - 1 : sample_size_;
+    while (drawn < of_one_pair) sample[drawn++] = distinct.Draw(group.begin, group.size, random);
+    const int before = group.begin;
+    const int after = num_matches_ - group.begin - group.size;
+    if (drawn < sample_size_ && before + after > 0) {
+      sample[drawn++] = random->Index(before + after) < before
+                            ? distinct.Draw(0, before, random)
+                            : distinct.Draw(group.begin + group.size, after, random);
     }
   }
-  for (; drawn < size; ++drawn) {
-    int r = random->Index(num_matches_ - num_taken);
-    for (int k = 0; k < num_taken && taken[k] <= r; ++k) ++r;
-    sample[drawn] = r;
-    take(r);
-  }
+  while (drawn < sample_size_) sample[drawn++] = distinct.Draw(0, num_matches_, random);
   return true;
 }
 

@@ -9,20 +9,38 @@
 
 namespace rigel {
 
-// A sample from one camera pair says nothing about scale, so where there are several pairs the
-// first two matches of a sample come from different ones; the rest are drawn from all. Every
-// loop is bounded.
+// Which matches a solver's sample may hold.
+enum class SampleKind {
+  // Any. A sample from one camera pair says nothing about scale, so where there are several pairs
+  // the
+  // first two matches come from different ones.
+  kSpread,
+  // All of one camera, the same at both times.
+  kOneCamera,
+  // All but the last of one camera pair, the last from another where there is one.
+  kOnePairPlusOne,
+};
+
+// Every loop is bounded.
 class Sampler {
  public:
-  Sampler(const std::vector<MatchGroup>& groups, int num_matches)
-      : groups_(groups), num_matches_(num_matches) {}
+  // `groups` are those of the grouped matches that the indices refer to.
+  Sampler(const std::vector<MatchGroup>& groups, SampleKind kind, int sample_size);
 
-  // `size` distinct indices. False if there are fewer matches than that.
-  bool Draw(int size, Random* random, int* sample) const;
+  // False if the matches allow no sample at all.
+  bool CanDraw() const { return can_draw_; }
+
+  // Distinct indices, as many as the sample size. False if there is no sample.
+  bool Draw(Random* random, int* sample) const;
 
  private:
   std::vector<MatchGroup> groups_;
-  int num_matches_;
+  std::vector<MatchGroup> allowed_;  // groups that can fill the part of one camera pair
+  int num_matches_ = 0;
+  int num_allowed_ = 0;  // matches in them
+  SampleKind kind_;
+  int sample_size_;
+  bool can_draw_ = false;
 };
 
 }  // namespace rigel

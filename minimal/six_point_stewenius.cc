@@ -18,7 +18,7 @@ using polynomial_system::NumMonomials;
 using polynomial_system::RealSolutions;
 
 #ifndef KSCALE
-#define KSCALE 0.15
+#define KSCALE 0.1
 #endif
 constexpr double kScale = KSCALE;
 constexpr int kQuadric = NumMonomials(2);
@@ -102,7 +102,7 @@ int RealRotations(const double (*quartics)[kQuartic], int num_quartics,
   int num_roots = roots.FindX(0.0, false, x, 0);
   if (centre) num_roots = roots.FindX(*centre, true, x, num_roots);
   for (int k = 0; k < num_roots; ++k) {
-    const auto solution = roots.Solution(x[k]);
+    const auto solution = roots.Solution(centre ? roots.Refine(x[k]) : x[k]);
     for (int i = 0; i < 3; ++i) r[k][i] = solution[i];
   }
   return num_roots;

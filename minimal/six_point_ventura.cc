@@ -16,6 +16,10 @@ using polynomial_system::MacaulayMatrix;
 using polynomial_system::NumMonomials;
 using polynomial_system::RealSolutions;
 
+#ifndef VS
+#define VS 0.1
+#endif
+constexpr double kScale = VS;
 // A linear function of r: coefficients of 1, x, y, z.
 using Linear = double[4];
 
@@ -60,14 +64,16 @@ int Solve6ptVentura(const PreparedMatches& matches, const int* sample, Solutions
   // 2 x 2 minors of columns (0, 1) and (2, 3), then the 4 x 4 minors by Laplace expansion.
   constexpr int kQuadric = NumMonomials(2);
   double first[6][6][kQuadric];
+  Row scaled[6];
+  for (int m = 0; m < 6; ++m) for (int c = 0; c < 4; ++c) for (int i = 0; i < 4; ++i) scaled[m].entry[c][i] = rows[m].entry[c][i] * (i == 0 ? 1.0 : kScale);
   double second[6][6][kQuadric];
   for (int i = 0; i < 6; ++i) {
     for (int j = i + 1; j < 6; ++j) {
       for (int c = 0; c < 4; c += 2) {
         double* minor = c == 0 ? first[i][j] : second[i][j];
         std::fill(minor, minor + kQuadric, 0.0);
-        AddProduct<1, 1>(rows[i].entry[c], rows[j].entry[c + 1], 1.0, minor);
-        AddProduct<1, 1>(rows[i].entry[c + 1], rows[j].entry[c], -1.0, minor);
+        AddProduct<1, 1>(scaled[i].entry[c], scaled[j].entry[c + 1], 1.0, minor);
+        AddProduct<1, 1>(scaled[i].entry[c + 1], scaled[j].entry[c], -1.0, minor);
       }
     }
   }
@@ -95,8 +101,8 @@ int Solve6ptVentura(const PreparedMatches& matches, const int* sample, Solutions
   double x[20];
   const int num_roots = roots.FindX(0.0, false, x, 0);
   for (int k = 0; k < num_roots; ++k) {
-    const auto start = roots.Solution(x[k]);
-    Eigen::Vector3d r(start[0], start[1], start[2]);
+    const auto start = roots.Solution(system.all_intra() ? roots.Refine(x[k]) : x[k]);
+    Eigen::Vector3d r = kScale * Eigen::Vector3d(start[0], start[1], start[2]);
     if (!r.allFinite()) continue;
     // Newton's method on M(r) (t, w)' = 0 itself.
     const auto evaluate = [&](const Eigen::Vector4d& v, SixPointSystem::Matrix64* M,

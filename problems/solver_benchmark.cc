@@ -27,6 +27,7 @@ constexpr double kBatchMicroseconds = 50.0;
 struct Problem {
   FramePair pair;
   PreparedMatches matches;
+  std::vector<int> sample;
 };
 
 double MicrosecondsSince(Clock::time_point start) {
@@ -66,7 +67,10 @@ double QuartileDistance(std::vector<double> values) {
 std::vector<Problem> MakeProblems(const SolverInfo& solver, const SolverBenchmarkOptions& options,
                                   bool inter) {
   SceneOptions scene;
-  scene.num_matches = solver.sample_size;
+  // Alternating cameras, but where the solver wants its sample from one pair: then a sampler picks
+  // it.
+  const bool any_sample = solver.sampling == SampleKind::kSpread;
+  scene.num_matches = any_sample ? solver.sample_size : 4 * solver.sample_size;
   scene.noise_px = 0.0;
   scene.rotation_deg = options.rotation_deg;
   scene.motion = MotionPattern::kRandom;
@@ -87,6 +91,16 @@ std::vector<Problem> MakeProblems(const SolverInfo& solver, const SolverBenchmar
     // A rig turned so that a large motion leaves nothing in view is no problem to solve.
     if (!MakeScenePair(scene, k, &problem.pair, &error)) continue;
     if (!MakeAlignment(problem.pair.prior, solver.prior, &alignment, &error)) continue;
+    problem.sample.resize(solver.sample_size);
+    if (any_sample) {
+      std::iota(problem.sample.begin(), problem.sample.end(), 0);
+    } else {
+      const GroupedMatches grouped(problem.pair.rig, problem.pair.matches);
+      problem.pair.matches = grouped.matches();
+      Random random = Random::Stream(options.seed, static_cast<uint64_t>(k));
+      const Sampler sampler(grouped.groups(), solver.sampling, solver.sample_size);
+      if (!sampler.Draw(&random, problem.sample.data())) continue;
+    }
     problem.matches.Set(problem.pair.rig, problem.pair.matches, alignment);
     problems.push_back(std::move(problem));
   }
@@ -101,15 +115,13 @@ SolverBenchmarkRow BenchmarkRow(const SolverInfo& solver, const SolverBenchmarkO
   std::vector<Problem> problems = MakeProblems(solver, options, inter);
   const int n = static_cast<int>(problems.size());
   if (n == 0) return row;
-  std::vector<int> sample(solver.sample_size);
-  std::iota(sample.begin(), sample.end(), 0);
 
   Solutions solutions;
   std::vector<double> rotations, directions;
   int found_truth = 0, found_direction = 0, failures = 0;
   double num_solutions = 0;
   for (const Problem& problem : problems) {
-    solver.solve(problem.matches, sample.data(), &solutions);
+    solver.solve(problem.matches, problem.sample.data(), &solutions);
     num_solutions += solutions.size();
     failures += solutions.empty() ? 1 : 0;
     double rotation = std::numeric_limits<double>::infinity();
@@ -136,8 +148,8 @@ SolverBenchmarkRow BenchmarkRow(const SolverInfo& solver, const SolverBenchmarkO
   if (const auto s = ComputeStatistics(rotations)) row.rotation_deg = s->median;
   if (const auto s = ComputeStatistics(directions)) row.translation_dir_deg = s->median;
 
-  const std::vector<double> times =
-      TimeBatches(n, [&](int k) { solver.solve(problems[k].matches, sample.data(), &solutions); });
+  const std::vector<double> times = TimeBatches(
+      n, [&](int k) { solver.solve(problems[k].matches, problems[k].sample.data(), &solutions); });
   if (const auto s = ComputeStatistics(times)) {
     row.mean_us = s->mean;
     row.median_us = s->median;
@@ -179,6 +191,7 @@ std::vector<SolverBenchmarkRow> BenchmarkSolver(const SolverInfo& solver,
   const double reference = ReferenceKernelMicroseconds();
   std::vector<SolverBenchmarkRow> rows;
   for (const bool inter : {false, true}) {
+    if (inter && solver.sampling == SampleKind::kOneCamera) continue;
     rows.push_back(BenchmarkRow(solver, options, inter));
     if (reference > 0) rows.back().ratio = rows.back().median_us / reference;
   }

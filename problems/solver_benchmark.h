@@ -40,7 +40,7 @@ struct SolverBenchmarkRow {
   double ratio = 0.0;       // median_us over the reference kernel's in the same run
 };
 
-// One row for intra- and one for inter-camera samples.
+// One row for intra- and one for inter-camera samples, where the solver takes both.
 std::vector<SolverBenchmarkRow> BenchmarkSolver(const SolverInfo& solver,
                                                 const SolverBenchmarkOptions& options);
 

@@ -21,7 +21,7 @@ class FramePairSolver {
       : solver_(solver),
         matches_(matches),
         prepared_(matches.rig(), matches.matches(), alignment),
-        sampler_(matches.groups(), matches.size()),
+        sampler_(matches.groups(), solver.sampling, solver.sample_size),
         residuals_(matches, ResidualKind::kSampson),
         engine_(residuals_),
         threshold_px_(threshold_px) {
@@ -32,9 +32,7 @@ class FramePairSolver {
 
   int num_data() const { return matches_.size(); }
   int sample_size() const { return solver_.sample_size; }
-  bool Draw(Random* random, int* sample) const {
-    return sampler_.Draw(solver_.sample_size, random, sample);
-  }
+  bool Draw(Random* random, int* sample) const { return sampler_.Draw(random, sample); }
   int MinimalSolver(const int* sample, Solutions* solutions) const {
     return solver_.solve(prepared_, sample, solutions);
   }

@@ -1,0 +1,206 @@
+// What all programs have in common: --help, --version, wrong flags, unwritable output.
+#include <filesystem>
+#include <map>
+
+#include "rigel/test/tools/tools_test.h"
+
+namespace rigel {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+// DESIGN.md, section 10, and --loss.
+const Args kEstimationFlags = {
+    "confidence",   "loss",  "matches",         "max_iterations",   "prior",
+    "prior_noise_axis", "prior_noise_deg", "prior_sigma_deg", "refine", "residual",
+    "seed", "threads", "threshold_px", "use", "use_prior_in_refine"};
+
+std::map<std::string, Args> FlagsOfTools() {
+  return {{"benchmark", {"json", "random_axis", "rotation_deg", "seed", "solvers", "trials"}},
+          {"compare", kEstimationFlags + Args{"by", "csv", "json", "solvers"}},
+          {"estimate", kEstimationFlags + Args{"csv", "json", "solver"}},
+          {"simulate",
+           {"inter_share", "motion", "noise_px", "num_matches", "outlier_share", "output", "pairs",
+            "rotation_axis", "rotation_deg", "seed"}}};
+}
+
+// A run that would succeed but for what is added to it. No file is there: who looks at files
+// before the flags fails with 1 instead of 2.
+Args Minimal(const std::string& tool) {
+  if (tool == "benchmark") return {"--solvers=4pt", "--trials=2"};
+  if (tool == "simulate") return {"--output=/nonexistent/of/rigel/../x", "--pairs=1"};
+  return {"--matches=/nonexistent/of/rigel"};
+}
+
+void ExpectUsageError(const std::string& tool, const Args& wrong, const std::string& what) {
+  const rigel::Run run = RunTool(tool, Minimal(tool) + wrong);
+  EXPECT_EXIT_CODE(run, 2);
+  EXPECT_THAT(run.err, HasSubstr(what)) << run.command;
+  EXPECT_THAT(run.err, Not(HasSubstr("/nonexistent"))) << "a file was looked at: " << run.command;
+  EXPECT_THAT(run.out, IsEmpty()) << run.command;
+}
+
+class EachTool : public testing::TestWithParam<std::string> {};
+
+INSTANTIATE_TEST_SUITE_P(Tools, EachTool,
+                         testing::Values("benchmark", "compare", "estimate", "simulate"),
+                         [](const auto& info) { return info.param; });
+
+TEST_P(EachTool, HelpExplainsItsOwnFlagsAndNoOthers) {
+  for (const char* spelling : {"--help", "-help", "-h"}) {
+    const Run run = RunTool(GetParam(), {spelling});
+    EXPECT_EXIT_CODE(run, 0);
+    EXPECT_THAT(run.err, IsEmpty());
+    EXPECT_THAT(run.out, StartsWith("rigel_" + GetParam() + ": "));
+    EXPECT_LE(Width(run.out), 100u);
+
+    const std::vector<std::string> lines = Lines(run.out);
+    Args listed;
+    for (size_t k = 0; k < lines.size(); ++k) {
+      if (lines[k].substr(0, 4) != "  --") continue;
+      const std::string name = lines[k].substr(4, lines[k].find_first_of("= ", 4) - 4);
+      listed.push_back(name);
+      const std::string explanation = k + 1 < lines.size() ? lines[k + 1] : "";
+      EXPECT_THAT(explanation, AllOf(StartsWith("      "), testing::SizeIs(testing::Gt(20u))))
+          << "--" << name << " is not explained";
+    }
+    EXPECT_THAT(listed, testing::UnorderedElementsAreArray(FlagsOfTools()[GetParam()]));
+  }
+}
+
+TEST_P(EachTool, HelpWinsOverWrongFlags) {
+  EXPECT_EXIT_CODE(RunTool(GetParam(), {"--seed=2", "--help"}), 0);
+}
+
+TEST_P(EachTool, VersionIsOneLine) {
+  const Run run = RunTool(GetParam(), {"--version"});
+  EXPECT_EXIT_CODE(run, 0);
+  EXPECT_THAT(run.err, IsEmpty());
+  EXPECT_EQ(run.out, "rigel_" + GetParam() + " " RIGEL_EXPECTED_VERSION "\n");
+}
+
+TEST_P(EachTool, UnknownFlagIsAUsageError) {
+  ExpectUsageError(GetParam(), {"--no_such_flag=1"}, "no_such_flag");
+  ExpectUsageError(GetParam(), {"-x"}, "x");
+}
+
+TEST_P(EachTool, ValueThatDoesNotParseIsAUsageError) {
+  ExpectUsageError(GetParam(), {"--seed=abc"}, "seed");
+  ExpectUsageError(GetParam(), {"--seed=1.5"}, "seed");
+  ExpectUsageError(GetParam(), {"--seed="}, "seed");
+  ExpectUsageError(GetParam(), {"--seed"}, "seed");  // no value follows
+}
+
+TEST_P(EachTool, PositionalArgumentIsAUsageError) {
+  ExpectUsageError(GetParam(), {"stray"}, "'stray'");
+  ExpectUsageError(GetParam(), {"--", "stray"}, "'stray'");
+}
+
+TEST_P(EachTool, UsageErrorPointsToHelp) {
+  const Run run = RunTool(GetParam(), {"stray"});
+  EXPECT_THAT(run.err, HasSubstr("rigel_" + GetParam() + " --help"));
+}
+
+TEST(Flags, ValueOutOfRangeIsAUsageErrorBeforeAnyFileIsRead) {
+  for (const char* tool : {"estimate", "compare"}) {
+    const std::pair<const char*, const char*> wrong[] = {
+        {"--use=both", "all, intra or inter"},
+        {"--prior=imu", "file, body or truth"},
+        {"--prior_noise_axis=yaw", "pitch, roll or random"},
+        {"--prior_noise_deg=nan", "prior_noise_deg"},
+        {"--prior_noise_deg=181", "prior_noise_deg"},
+        {"--prior_sigma_deg=-1", "prior_sigma_deg"},
+        {"--prior_sigma_deg=inf", "prior_sigma_deg"},
+        {"--refine=most", "none, full, prior, depths or prior-depths"},
+        {"--residual=pixels", "sampson, angular or algebraic"},
+        {"--loss=l1", "none, huber, cauchy, tukey or truncated"},
+        {"--threshold_px=0", "threshold_px must be positive"},
+        {"--threshold_px=nan", "threshold_px must be positive"},
+        {"--confidence=1", "confidence must lie in (0, 1)"},
+        {"--confidence=0", "confidence must lie in (0, 1)"},
+        {"--max_iterations=0", "max_iterations must be at least 1"},
+        {"--threads=0", "1 to 1024"},
+        {"--threads=2000", "1 to 1024"},
+        {"--seed=-1", "seed"},
+    };
+    for (const auto& [flag, what] : wrong) ExpectUsageError(tool, {flag}, what);
+    const Run run = RunTool(tool, {});
+    EXPECT_EXIT_CODE(run, 2);
+    EXPECT_THAT(run.err, HasSubstr("--matches is missing"));
+  }
+}
+
+TEST(Flags, UnknownSolverIsAUsageErrorThatListsTheSolvers) {
+  ExpectUsageError("estimate", {"--solver=5pt"}, "'4pt-axis'" + std::string());
+}
+
+TEST(Flags, UnwritableOutputFileFails) {
+  // Solvers are named, so that nothing takes long.
+  for (const char* flag : {"--json=/nonexistent/directory/x", "--json=/dev/full", "--json=/"}) {
+    const Run run = RunTool("benchmark", {"--solvers=4pt", "--trials=2", flag});
+    EXPECT_EXIT_CODE(run, 1);
+    EXPECT_THAT(run.err, HasSubstr(std::string(flag).substr(7)));
+    EXPECT_THAT(run.err, HasSubstr("cannot be"));
+  }
+}
+
+class Outputs : public ToolsTest {};
+
+TEST_F(Outputs, UnwritableFileFailsAndTheTableIsThereAllTheSame) {
+  const std::string matches = Simulate("in", {"--pairs=1", "--num_matches=30"});
+  for (const char* tool : {"estimate", "compare"}) {
+    for (const char* file : {"/nonexistent/directory/x", "/dev/full", "/"}) {
+      for (const char* flag : {"--json=", "--csv="}) {
+        const Run run = RunTool(tool, {"--matches=" + matches, std::string(flag) + file});
+        EXPECT_EXIT_CODE(run, 1);
+        EXPECT_THAT(run.err, HasSubstr(file + std::string(": cannot be")));
+        EXPECT_THAT(run.out, HasSubstr("-----"));
+      }
+    }
+  }
+}
+
+TEST_F(Outputs, UnwritableStdoutFails) {
+  const std::string matches = Simulate("in", {"--pairs=1", "--num_matches=30"});
+  const std::pair<const char*, Args> runs[] = {
+      {"estimate", {"--matches=" + matches}},
+      {"estimate", {"--matches=" + matches, "--json=-"}},
+      {"estimate", {"--matches=" + matches, "--csv=-"}},
+      {"compare", {"--matches=" + matches, "--solvers=4pt"}},
+      {"compare", {"--matches=" + matches, "--solvers=4pt", "--json=-"}},
+      {"benchmark", {"--solvers=4pt", "--trials=2"}},
+      {"benchmark", {"--solvers=4pt", "--trials=2", "--json=-"}},
+      {"estimate", {"--help"}},
+      {"simulate", {"--version"}},
+  };
+  for (const auto& [tool, args] : runs) {
+    for (const Stdout to : {Stdout::kFullDevice, Stdout::kClosed, Stdout::kBrokenPipe}) {
+      const rigel::Run run = RunTool(tool, args, to);
+      EXPECT_EXIT_CODE(run, 1);
+      EXPECT_THAT(run.err, HasSubstr("stdout: cannot be written"))
+          << run.command << " " << static_cast<int>(to);
+    }
+  }
+}
+
+TEST_F(Outputs, ClosedStdoutDoesNotEndUpInTheFileOfTheReport) {
+  // The first file that is opened gets the number of the closed stdout.
+  const std::string matches = Simulate("in", {"--pairs=1", "--num_matches=30"});
+  const Run run = RunTool("estimate", {"--matches=" + matches, "--json=" + Path("x.json")},
+                          Stdout::kClosed);
+  EXPECT_EXIT_CODE(run, 1);
+  ParseReport(ReadText(Path("x.json")));
+}
+
+TEST_F(Outputs, OnlyOneReportFitsOnStdout) {
+  for (const char* tool : {"estimate", "compare"}) {
+    ExpectUsageError(tool, {"--json=-", "--csv=-"}, "--csv=-");
+  }
+}
+
+}  // namespace
+}  // namespace rigel

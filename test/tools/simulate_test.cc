@@ -1,0 +1,179 @@
+// rigel_simulate: files that the other programs can rely on.
+#include <filesystem>
+
+#include "rigel/core/angles.h"
+#include "rigel/core/metrics.h"
+#include "rigel/problems/match_file.h"
+#include "rigel/test/tools/tools_test.h"
+
+namespace rigel {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class SimulateTest : public ToolsTest {
+ protected:
+  std::vector<FramePair> ReadAll(const std::string& directory) {
+    std::vector<std::string> errors;
+    std::vector<FramePair> pairs;
+    for (const std::string& path : ListMatchFiles(directory, &errors)) {
+      FramePair pair;
+      std::string error;
+      EXPECT_TRUE(ReadMatchFile(path, &pair, &error)) << error;
+      pairs.push_back(pair);
+    }
+    EXPECT_THAT(errors, IsEmpty());
+    return pairs;
+  }
+
+  // All files of a directory, one after the other, with their names.
+  std::string Bytes(const std::string& directory) {
+    std::vector<std::string> errors;
+    std::string bytes;
+    for (const std::string& path : ListMatchFiles(directory, &errors)) {
+      bytes += std::filesystem::path(path).filename().string() + "\n" + ReadText(path);
+    }
+    return bytes;
+  }
+};
+
+TEST_F(SimulateTest, DefaultsAreTheSceneOfTheBenchmarks) {
+  const Run run = RunTool("simulate", {"--output=" + Path("out")});
+  ASSERT_EXIT_CODE(run, 0);
+  EXPECT_THAT(run.out, IsEmpty());
+  EXPECT_THAT(run.err, HasSubstr("wrote 50 match files"));
+  const std::vector<FramePair> pairs = ReadAll(Path("out"));
+  ASSERT_EQ(pairs.size(), 50u);
+  EXPECT_EQ(std::filesystem::path(pairs.front().name).filename(), "000000.matches");
+  EXPECT_EQ(std::filesystem::path(pairs.back().name).filename(), "000049.matches");
+  for (const FramePair& pair : pairs) {
+    EXPECT_EQ(pair.rig.size(), 2);
+    EXPECT_EQ(pair.matches.size(), 200u);
+    EXPECT_EQ(pair.noise_px, 0.5);
+    ASSERT_TRUE(pair.truth.has_value());
+    EXPECT_NEAR(RadToDeg(LogSO3(pair.truth->R).y()), 1.0, 1e-9);
+    EXPECT_NEAR((pair.truth->t - Eigen::Vector3d::UnitZ()).norm(), 0.0, 1e-12);
+    ASSERT_TRUE(pair.prior.gravity1 && pair.prior.gravity2 && pair.prior.axis);
+    EXPECT_FALSE(pair.prior.normal.has_value());
+    EXPECT_NEAR((pair.truth->R * *pair.prior.gravity1 - *pair.prior.gravity2).norm(), 0, 1e-12);
+    for (const Match& match : pair.matches) EXPECT_TRUE(match.IsIntra());
+  }
+}
+
+TEST_F(SimulateTest, SameSeedSameBytes) {
+  const Args args = {"--pairs=3", "--num_matches=50", "--motion=random", "--rotation_axis=random",
+                     "--inter_share=0.5", "--outlier_share=0.2", "--seed=7"};
+  const std::string bytes = Bytes(Simulate("a", args));
+  EXPECT_EQ(bytes, Bytes(Simulate("b", args)));
+  EXPECT_NE(bytes, Bytes(Simulate("c", args + Args{"--seed=8"})));
+  // Over what is there already.
+  EXPECT_EQ(bytes, Bytes(Simulate("c", args)));
+}
+
+TEST_F(SimulateTest, MotionsAreAsNamed) {
+  for (const FramePair& pair : ReadAll(Simulate("sideways", {"--motion=sideways", "--pairs=2"}))) {
+    EXPECT_NEAR((pair.truth->t - Eigen::Vector3d::UnitX()).norm(), 0.0, 1e-12);
+  }
+  const std::vector<FramePair> random = ReadAll(Simulate("random", {"--motion=random"}));
+  EXPECT_NEAR(random[0].truth->t.norm(), 1.0, 1e-12);
+  EXPECT_GT((random[0].truth->t - random[1].truth->t).norm(), 1e-3);
+}
+
+TEST_F(SimulateTest, PlanarFilesHaveTheNormal) {
+  const std::string directory = Simulate("planar", {"--motion=planar", "--rotation_deg=10"});
+  EXPECT_THAT(ReadText(directory + "/000000.matches"), HasSubstr("\nnormal 0 1 0\n"));
+  for (const FramePair& pair : ReadAll(directory)) {
+    ASSERT_TRUE(pair.prior.normal.has_value());
+    EXPECT_NEAR(pair.prior.normal->dot(pair.truth->t), 0.0, 1e-12);
+    EXPECT_NEAR((pair.truth->R * *pair.prior.normal - *pair.prior.normal).norm(), 0.0, 1e-12);
+  }
+}
+
+TEST_F(SimulateTest, NoNoiseNoNoiseLine) {
+  const std::string text =
+      ReadText(Simulate("exact", {"--noise_px=0", "--pairs=1"}) + "/000000.matches");
+  EXPECT_THAT(text, testing::Not(HasSubstr("noise_px")));
+}
+
+TEST_F(SimulateTest, SharesAreExact) {
+  const std::string directory = Simulate(
+      "shares", {"--pairs=2", "--inter_share=0.25", "--outlier_share=0.5", "--noise_px=0"});
+  for (const FramePair& pair : ReadAll(directory)) {
+    int inter = 0;
+    for (const Match& match : pair.matches) inter += match.IsIntra() ? 0 : 1;
+    EXPECT_EQ(inter, 50);
+  }
+  EXPECT_EXIT_CODE(RunTool("simulate", {"--output=" + Path("all"), "--pairs=1", "--inter_share=1",
+                                        "--outlier_share=1"}),
+                   0);
+}
+
+TEST_F(SimulateTest, NoMatchesAreAFileToo) {
+  const std::vector<FramePair> pairs =
+      ReadAll(Simulate("none", {"--num_matches=0", "--pairs=1"}));
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_THAT(pairs[0].matches, IsEmpty());
+}
+
+TEST_F(SimulateTest, WrongValuesAreUsageErrorsAndLeaveNothing) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {"--inter_share=1.5", "inter_share"},
+      {"--inter_share=-0.1", "inter_share"},
+      {"--outlier_share=2", "outlier_share"},
+      {"--outlier_share=nan", "outlier_share"},
+      {"--noise_px=-1", "noise_px"},
+      {"--noise_px=inf", "noise_px"},
+      {"--rotation_deg=nan", "rotation_deg"},
+      {"--num_matches=-1", "num_matches"},
+      {"--pairs=0", "--pairs"},
+      {"--pairs=-3", "--pairs"},
+      {"--motion=up", "forward, random, sideways or planar"},
+      {"--rotation_axis=z", "y or random"},
+  };
+  for (const auto& [flag, what] : wrong) {
+    const rigel::Run run = RunTool("simulate", {"--output=" + Path("out"), flag});
+    EXPECT_EXIT_CODE(run, 2);
+    EXPECT_THAT(run.err, HasSubstr(what));
+  }
+  const Run planar = RunTool(
+      "simulate", {"--output=" + Path("out"), "--motion=planar", "--rotation_axis=random"});
+  EXPECT_EXIT_CODE(planar, 2);
+  EXPECT_THAT(planar.err, HasSubstr("planar"));
+  const Run nowhere = RunTool("simulate", {});
+  EXPECT_EXIT_CODE(nowhere, 2);
+  EXPECT_THAT(nowhere.err, HasSubstr("--output is missing"));
+  EXPECT_FALSE(std::filesystem::exists(Path("out")));
+}
+
+TEST_F(SimulateTest, DirectoryIsMadeWithItsParents) {
+  EXPECT_EQ(ReadAll(Simulate("a/b/c", {"--pairs=2"})).size(), 2u);
+}
+
+TEST_F(SimulateTest, DirectoryThatCannotBeMadeFails) {
+  WriteText(Path("file"), "in the way");
+  for (const std::string& output : {Path("file"), Path("file") + "/below", std::string("/proc/x")}) {
+    const Run run = RunTool("simulate", {"--output=" + output, "--pairs=1"});
+    EXPECT_EXIT_CODE(run, 1);
+    EXPECT_THAT(run.err, HasSubstr(output));
+    EXPECT_EQ(Lines(run.err).size(), 1u) << run.err;
+  }
+}
+
+TEST_F(SimulateTest, FileThatCannotBeWrittenFails) {
+  std::filesystem::create_directories(Path("out/000001.matches/below"));
+  const Run run = RunTool("simulate", {"--output=" + Path("out"), "--pairs=3"});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, HasSubstr("000001.matches: cannot be written"));
+}
+
+TEST_F(SimulateTest, MotionOutOfViewFailsWithAMessage) {
+  const Run run =
+      RunTool("simulate", {"--output=" + Path("out"), "--pairs=1", "--rotation_deg=180"});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, HasSubstr("in the view of camera"));
+}
+
+}  // namespace
+}  // namespace rigel
