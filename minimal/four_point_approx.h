@@ -14,7 +14,7 @@ namespace rigel {
 
 // As published: roots of the cubic det F(a) (eq. d5; quadratic for intra-camera samples), biased
 // by the linearization. `sample` holds four indices into `matches`. Overwrites `solutions`,
-// returns their number, 0 to 3; zero is normal. Degenerate: see docs/degeneracies.md.
+// returns their number, 0 to 3; zero is normal. Degenerate samples: depth_system.h.
 int Solve4ptApprox(const PreparedMatches& matches, const int* sample, Solutions* solutions);
 
 // The same made exact near zero rotation: Newton steps on the exact det F, started at the roots of

@@ -54,7 +54,7 @@ SixPointSystem::SixPointSystem(const PreparedMatches& matches, const int* sample
   Add(Eigen::Matrix3d::Identity(), tw);
 }
 
-void SixPointSystem::Add(const Eigen::Matrix3d& R, const Eigen::Vector4d& v) const {
+void SixPointSystem::Add(const Eigen::Matrix3d& R, const Eigen::Vector4d& v) {
   Solution solution;
   solution.R = R;
   solution.has_scale = std::abs(v[3]) > kNegligible * v.head<3>().norm();
@@ -83,6 +83,12 @@ void SixPointSystem::Add(const Eigen::Matrix3d& R, const Eigen::Vector4d& v) con
     }
   }
   solutions_->Append() = solution;
+}
+
+Eigen::Matrix3d SixPointBasis() {
+  Eigen::Matrix3d B;
+  B << 2.0, 6.0, 3.0, 3.0, 2.0, -6.0, -6.0, 3.0, -2.0;
+  return B / 7.0;
 }
 
 Eigen::Vector4d NullVector(const SixPointSystem::Matrix64& M) {

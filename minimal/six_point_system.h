@@ -38,7 +38,7 @@ class SixPointSystem {
 
   // Adds (R, t/w), unless it is a solution already, not finite, or the motion that brings all
   // camera centres of all matches together: no match can contradict that one.
-  void Add(const Eigen::Matrix3d& R, const Eigen::Vector4d& v) const;
+  void Add(const Eigen::Matrix3d& R, const Eigen::Vector4d& v);
 
  private:
   const RayPair* rays_[6];
@@ -49,31 +49,39 @@ class SixPointSystem {
   bool pure_translation_ = false;
 };
 
+// A basis of the body frame whose first axis is no likely rotation axis, so that solutions differ
+// in their first coordinate.
+Eigen::Matrix3d SixPointBasis();
+
 // The null vector of the best rank 3 approximation of M.
 Eigen::Vector4d NullVector(const SixPointSystem::Matrix64& M);
 
 // Newton's method on M(r) v = 0 for six unknowns: r and v, whose largest entry is held. The problem
-// gives evaluate(v, &M, &D): M and the derivative D (6 x 3) of M v by r; and update(dr).
-// v: the start and the result. True if it converged.
+// gives evaluate(v, &M, &D): M and the derivative D (6 x 3) of M v by r; and update(dr). v is a
+// result only: it starts at the null vector of M. True if it converged.
 template <class Evaluate, class Update>
 bool PolishSixPoint(const Evaluate& evaluate, const Update& update, Eigen::Vector4d* v) {
-  constexpr int kMaxIterations = 20;
+  constexpr int kMaxIterations = 10;
+  constexpr double kMaxStep = 0.5;
   constexpr double kConverged = 1e-7;  // what is left is of the order of the step squared
+  SixPointSystem::Matrix64 M;
+  Eigen::Matrix<double, 6, 3> D;
+  evaluate(Eigen::Vector4d::Zero(), &M, &D);
+  *v = NullVector(M);
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     int held = 0;
     v->cwiseAbs().maxCoeff(&held);
     *v /= (*v)[held];
-    SixPointSystem::Matrix64 M;
-    SixPointSystem::Matrix6 J;
-    Eigen::Matrix<double, 6, 3> D;
     evaluate(*v, &M, &D);
+    SixPointSystem::Matrix6 J;
     J.leftCols<3>() = D;
     for (int c = 0, column = 3; c < 4; ++c) {
       if (c != held) J.col(column++) = M.col(c);
     }
     const SixPointSystem::Vector6 step = J.partialPivLu().solve(M * *v);
     const double size = step.norm();
-    if (!(step.head<3>().norm() < 0.5)) return false;
+    // Written so that a NaN ends it.
+    if (!(step.head<3>().squaredNorm() < kMaxStep * kMaxStep)) return false;
     update(-step.head<3>());
     for (int c = 0, row = 3; c < 4; ++c) {
       if (c != held) (*v)[c] -= step[row++];

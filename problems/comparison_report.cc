@@ -60,27 +60,28 @@ Json SummaryJson(const SolverSummary& s) {
 }
 
 std::string SequenceTable(const std::vector<SolverSummary>& summaries) {
-  // A blank before the first column of each group; 100 columns at most.
+  // A blank before the first column of each group. The widths given keep it to 100 columns with the
+  // longest solver name.
   Table table(1);
   table.AddHeader(
       {"", "", " rotation", "[deg]", "", " direction", "[deg]", "", " scale", "[%]", " time"});
   table.AddHeader({"solver", "fail", " raw", "refined", "bound", " raw", "refined", "bound", " raw",
                    "refined", " [ms]"});
   const auto percent = [](const std::optional<Statistics>& s) {
-    return s ? FormatNumber(100.0 * s->median, 2) : std::string("-");
+    return s ? FormatFitted(100.0 * s->median, 2, 5) : std::string("-");
   };
   bool any_bound = false;
   for (const SolverSummary& s : summaries) {
     std::optional<double> ms;
     if (s.ransac_ms && s.refine_ms) ms = s.ransac_ms->median + s.refine_ms->median;
     table.AddRow({s.solver, std::to_string(s.failures),
-                  " " + FormatNumber(MedianOf(s.raw_rotation_deg), 4),
-                  FormatNumber(MedianOf(s.refined_rotation_deg), 4),
-                  FormatNumber(MedianOf(s.bound_rotation_deg), 4),
-                  " " + FormatNumber(MedianOf(s.raw_direction_deg), 3),
-                  FormatNumber(MedianOf(s.refined_direction_deg), 3),
-                  FormatNumber(MedianOf(s.bound_direction_deg), 3), " " + percent(s.raw_scale),
-                  percent(s.refined_scale), " " + FormatNumber(ms, 2)});
+                  " " + FormatFitted(MedianOf(s.raw_rotation_deg), 4, 6),
+                  FormatFitted(MedianOf(s.refined_rotation_deg), 4, 6),
+                  FormatFitted(MedianOf(s.bound_rotation_deg), 4, 6),
+                  " " + FormatFitted(MedianOf(s.raw_direction_deg), 3, 5),
+                  FormatFitted(MedianOf(s.refined_direction_deg), 3, 5),
+                  FormatFitted(MedianOf(s.bound_direction_deg), 3, 5), " " + percent(s.raw_scale),
+                  percent(s.refined_scale), " " + FormatFitted(ms, 2, 4)});
     any_bound = any_bound || (s.bound_rotation_deg && s.refined_rotation_deg);
   }
   std::string text = table.Format();
@@ -114,7 +115,7 @@ std::string ComparisonTable(const std::vector<SolverSummary>& summaries) {
       if (s.sequence == sequence) group.push_back(s);
     }
     if (!text.empty()) text += "\n";
-    text += (sequence == "all" ? "all pairs" : "sequence " + sequence) + ", " +
+    text += (sequence == "all" ? "all pairs" : "sequence " + Shortened(sequence, 60)) + ", " +
             std::to_string(group.front().pairs) + " of them; medians\n" + SequenceTable(group);
   }
   return text;

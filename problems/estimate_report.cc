@@ -23,8 +23,8 @@ std::string ShortName(const std::string& name) {
       text.compare(text.size() - ending.size(), ending.size(), ending) == 0) {
     text.resize(text.size() - ending.size());
   }
-  constexpr size_t kWidth = 20;
-  return text.size() <= kWidth ? text : "..." + text.substr(text.size() - (kWidth - 3));
+  constexpr size_t kWidth = 16;
+  return Shortened(text, kWidth);
 }
 
 bool DirectionKnown(const MotionEstimate& e) { return e.refine.translation_observable; }
@@ -48,9 +48,10 @@ void PutFinite(const char* key, double value, Json* object) {
 
 std::string EstimateTable(const std::vector<FramePair>& pairs,
                           const std::vector<MotionEstimate>& estimates) {
+  // The widths given keep it to 100 columns.
   Table table(1);
-  table.AddHeader({"pair", "status", "angle", "sd", "direction", "of t", "", "sd", "|t|", "inl",
-                   "res", "obs"});
+  table.AddHeader(
+      {"pair", "status", "angle", "sd", "direction", "of t", "", "sd", "|t|", "inl", "res", "obs"});
   table.AddHeader({"", "", "[deg]", "[deg]", "x", "y", "z", "[deg]", "[m]", "", "[px]", ""});
   bool any_unobservable = false;
   for (size_t k = 0; k < pairs.size(); ++k) {
@@ -67,16 +68,16 @@ std::string EstimateTable(const std::vector<FramePair>& pairs,
     any_unobservable = any_unobservable || !direction || !scale;
     const Eigen::Vector3d d = e.pose.t.normalized();
     const auto sigma = [&](double radians) {
-      return refined && radians >= 0 ? FormatNumber(RadToDeg(radians), 3) : std::string("-");
+      return refined && radians >= 0 ? FormatFitted(RadToDeg(radians), 3, 5) : std::string("-");
     };
     table.AddRow({ShortName(pairs[k].name), EstimateStatusName(e.status),
-                  FormatNumber(RadToDeg(LogSO3(e.pose.R).norm()), 3),
+                  FormatFitted(RadToDeg(LogSO3(e.pose.R).norm()), 3, 6),
                   sigma(e.refine.rotation_sigma), direction ? FormatNumber(d.x(), 4) : "-",
                   direction ? FormatNumber(d.y(), 4) : "-",
                   direction ? FormatNumber(d.z(), 4) : "-",
                   direction ? sigma(e.refine.direction_sigma) : "-",
-                  scale ? FormatNumber(e.pose.t.norm(), 4) : "-", std::to_string(e.num_inliers),
-                  refined ? FormatNumber(e.refine.median_residual_px, 3) : "-",
+                  scale ? FormatFitted(e.pose.t.norm(), 4, 6) : "-", std::to_string(e.num_inliers),
+                  refined ? FormatFitted(e.refine.median_residual_px, 3, 5) : "-",
                   refined ? ObservableLetters(e.refine) : "-"});
   }
   std::string text = table.Format();

@@ -5,13 +5,23 @@
 #include <cstdio>
 
 namespace rigel {
+namespace {
+
+// In UTF-8 text: all bytes but those that continue a character.
+bool StartsCharacter(char c) { return (c & 0xc0) != 0x80; }
+
+size_t Length(const std::string& text) {
+  return static_cast<size_t>(std::count_if(text.begin(), text.end(), StartsCharacter));
+}
+
+}  // namespace
 
 std::string Table::Format() const {
   std::vector<size_t> widths;
   const auto measure = [&](const std::vector<std::vector<std::string>>& rows) {
     for (const auto& row : rows) {
       if (widths.size() < row.size()) widths.resize(row.size(), 0);
-      for (size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+      for (size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], Length(row[c]));
     }
   };
   measure(headers_);
@@ -22,7 +32,7 @@ std::string Table::Format() const {
     std::string line;
     for (size_t c = 0; c < row.size(); ++c) {
       if (c > 0) line += std::string(gap_, ' ');
-      const std::string padding(widths[c] - row[c].size(), ' ');
+      const std::string padding(widths[c] - Length(row[c]), ' ');
       line += c == 0 ? row[c] + padding : padding + row[c];
     }
     line.erase(line.find_last_not_of(' ') + 1);
@@ -41,6 +51,28 @@ std::string FormatNumber(std::optional<double> value, int digits) {
   char text[64];
   std::snprintf(text, sizeof(text), "%.*f", digits, *value);
   return text;
+}
+
+std::string FormatFitted(std::optional<double> value, int digits, size_t width) {
+  std::string text = FormatNumber(value, digits);
+  for (int d = digits - 1; d >= 0 && text.size() > width; --d) text = FormatNumber(value, d);
+  if (text.size() <= width) return text;
+  // One digit and the power of ten, without the "+0" of printf.
+  char digit_and_power[64];
+  std::snprintf(digit_and_power, sizeof(digit_and_power), "%.0e", *value);
+  text = digit_and_power;
+  const size_t e = text.find('e');
+  return text.substr(0, e + 1) + std::to_string(std::stoi(text.substr(e + 1)));
+}
+
+std::string Shortened(const std::string& text, size_t width) {
+  if (Length(text) <= width) return text;
+  size_t begin = text.size();
+  for (size_t kept = 3; kept < width; ++kept) {
+    --begin;
+    while (begin > 0 && !StartsCharacter(text[begin])) --begin;
+  }
+  return "..." + text.substr(begin);
 }
 
 }  // namespace rigel

@@ -8,8 +8,8 @@
 
 namespace rigel {
 
-// Columns are as wide as their widest cell; the first is aligned left, the others right, `gap`
-// blanks apart. No trailing blanks.
+// Columns are as wide as their widest cell, in UTF-8 characters; the first is aligned left, the
+// others right, `gap` blanks apart. No trailing blanks.
 class Table {
  public:
   explicit Table(int gap = 2) : gap_(gap) {}
@@ -27,6 +27,13 @@ class Table {
 
 // Fixed-point with `digits` decimals; "-" for nothing or a number that is not finite.
 std::string FormatNumber(std::optional<double> value, int digits);
+
+// The same with as many of the decimals as fit into `width` characters; where not even the integer
+// does, "2e4".
+std::string FormatFitted(std::optional<double> value, int digits, size_t width);
+
+// The text, or "..." and its end if it has more than `width` UTF-8 characters.
+std::string Shortened(const std::string& text, size_t width);
 
 }  // namespace rigel
 

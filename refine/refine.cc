@@ -323,7 +323,7 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
   if (prior.size() > 0) problem.AddResidualBlock(&prior_cost, nullptr, parameters.data());
 
   ceres::Solver::Options solver_options;
-  solver_options.linear_solver_type = ceres::DENSE_QR;
+  solver_options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   solver_options.logging_type = ceres::SILENT;
   solver_options.minimizer_progress_to_stdout = false;
   solver_options.num_threads = 1;

@@ -51,23 +51,35 @@ int Run() {
     for (const SolverInfo& solver : SolverCatalogue()) solvers.push_back(&solver);
   }
 
+  bool ok = true;
   std::vector<SolverBenchmarkRow> rows;
   {
     Progress progress("rigel_benchmark", static_cast<int>(solvers.size()));
     for (const SolverInfo* solver : solvers) {
-      for (const SolverBenchmarkRow& row : BenchmarkSolver(*solver, options)) rows.push_back(row);
+      for (const SolverBenchmarkRow& row : BenchmarkSolver(*solver, options)) {
+        if (row.mean_us > 0) {
+          rows.push_back(row);
+        } else {
+          // There was no problem to solve.
+          ok = false;
+          std::cerr << row.solver << ", " << row.matches
+                    << ": with --rotation_deg=" << FLAGS_rotation_deg
+                    << " hardly any point stays in view\n";
+        }
+      }
       progress.Step();
     }
   }
+  if (rows.empty()) return kExitFailed;
   const double reference = ReferenceKernelMicroseconds();
   if (FLAGS_json != "-") {
     std::cout << SolverBenchmarkTable(rows)
               << "\nreference kernel (4x4 LU solve by Eigen): " << FormatNumber(reference, 4)
-              << " us; preparing a match: " << FormatNumber(rows[0].prepare_us, 3) << " us\n"
-              << std::flush;
+              << " us; preparing a match: " << FormatNumber(rows[0].prepare_us, 3) << " us\n";
+    ok = FlushStdout() && ok;
   }
-  return WriteOutput(FLAGS_json, SolverBenchmarkJson(rows, options, reference)) ? kExitDone
-                                                                                : kExitFailed;
+  ok = WriteOutput(FLAGS_json, SolverBenchmarkJson(rows, options, reference)) && ok;
+  return ok ? kExitDone : kExitFailed;
 }
 
 }  // namespace

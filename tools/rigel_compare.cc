@@ -10,6 +10,8 @@
 #include "rigel/tools/estimation_flags.h"
 #include "rigel/tools/tool.h"
 
+DECLARE_string(refine);
+
 DEFINE_string(solvers, "", "names of solvers, comma separated; all that the priors allow if empty");
 DEFINE_string(by, "", "sequence: one more row for each sequence of the files");
 DEFINE_string(json, "", "write the report (format rigel-report 1) to this file; - is stdout");
@@ -29,6 +31,14 @@ constexpr char kUsage[] =
     "them,\n"
     "where the files state the image noise, the Cramer-Rao bound that no estimate can beat.\n";
 
+// Some forms of refinement hold the solver's prior exact; not every solver has one.
+bool CanRefine(const ComparisonOptions& options, const std::string& solver) {
+  EstimateOptions estimate = options.estimate;
+  estimate.solver = solver;
+  std::string error;
+  return estimate.IsValid(&error);
+}
+
 int Run() {
   ComparisonOptions options;
   std::string error;
@@ -39,6 +49,15 @@ int Run() {
       return UsageError("--solvers: there is no solver '" + name + "'; expected some of " +
                         SolverNames());
     }
+    if (!CanRefine(options, name)) {
+      return UsageError("--refine=" + FLAGS_refine + ": " + name + " has no prior to hold exact");
+    }
+    if (std::count(options.solvers.begin(), options.solvers.end(), name) > 1) {
+      return UsageError("--solvers: '" + name + "' is named twice");
+    }
+  }
+  if (FLAGS_json == "-" && FLAGS_csv == "-") {
+    return UsageError("--csv=-: stdout has the JSON already; name a file for one of them");
   }
   if (!FLAGS_by.empty() && FLAGS_by != "sequence") {
     return UsageError("--by=" + FLAGS_by + ": expected sequence");
@@ -54,7 +73,11 @@ int Run() {
   }
   pairs.erase(no_truth, pairs.end());
   if (pairs.empty()) return kExitFailed;
-  if (options.solvers.empty()) options.solvers = SolversForPairs(pairs);
+  if (options.solvers.empty()) {
+    for (const std::string& name : SolversForPairs(pairs)) {
+      if (CanRefine(options, name)) options.solvers.push_back(name);
+    }
+  }
   if (options.solvers.empty()) {
     std::cerr << "no solver's prior is in every file; try --prior=body\n";
     return kExitFailed;
@@ -65,7 +88,6 @@ int Run() {
   for (const std::string& name : options.solvers) {
     EstimateOptions estimate = options.estimate;
     estimate.solver = name;
-    if (!estimate.IsValid(&error)) return UsageError(error);
     Progress progress(name, static_cast<int>(pairs.size()));
     std::vector<PairResult> results =
         RunSolver(pairs, estimate, options.num_threads, [&] { progress.Step(); });
@@ -86,7 +108,10 @@ int Run() {
   }
 
   // stdout belongs to the machine if it asked for it.
-  if (FLAGS_json != "-" && FLAGS_csv != "-") std::cout << ComparisonTable(summaries) << std::flush;
+  if (FLAGS_json != "-" && FLAGS_csv != "-") {
+    std::cout << ComparisonTable(summaries);
+    ok = FlushStdout() && ok;
+  }
   const ReportOptions report_options = FlagValues({"json", "csv", "threads"});
   ok = WriteOutput(FLAGS_json,
                    ComparisonJson(summaries, static_cast<int>(pairs.size()), report_options)) &&

@@ -37,6 +37,9 @@ int Run() {
     return UsageError("--solver=" + FLAGS_solver + ": expected one of " + SolverNames());
   }
   if (!estimate.IsValid(&error)) return UsageError(error);
+  if (FLAGS_json == "-" && FLAGS_csv == "-") {
+    return UsageError("--csv=-: stdout has the JSON already; name a file for one of them");
+  }
 
   bool ok = true;
   const std::vector<FramePair> pairs = ReadPairs(options, &ok);
@@ -59,7 +62,8 @@ int Run() {
 
   // stdout belongs to the machine if it asked for it.
   if (FLAGS_json != "-" && FLAGS_csv != "-") {
-    std::cout << EstimateTable(pairs, estimates) << std::flush;
+    std::cout << EstimateTable(pairs, estimates);
+    ok = FlushStdout() && ok;
   }
   const ReportOptions report_options = FlagValues({"json", "csv", "threads"});
   ok = WriteOutput(FLAGS_json, EstimateJson(pairs, estimates, report_options)) && ok;

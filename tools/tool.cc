@@ -12,6 +12,7 @@
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
+#include "rigel/problems/csv.h"
 #include "rigel/tools/version.h"
 
 // gflags leaves the process through this pointer, with code 1; it is not in a public header.
@@ -22,9 +23,21 @@ extern void (*gflags_exitfunc)(int);
 namespace rigel {
 namespace {
 
-[[noreturn]] void ExitUsage(int) { std::exit(kExitUsage); }
-
 std::string ProgramName() { return gflags::ProgramInvocationShortName(); }
+
+void PointToHelp() { std::cerr << "Try '" << ProgramName() << " --help'.\n"; }
+
+[[noreturn]] void ExitUsage(int) {
+  PointToHelp();
+  std::exit(kExitUsage);
+}
+
+// gflags writes 0.9999 as 0.99990000000000001.
+std::string PlainValue(const gflags::CommandLineFlagInfo& flag, const std::string& value) {
+  if (flag.type != "double") return value;
+  const std::string plain = CsvNumber(std::strtod(value.c_str(), nullptr));
+  return plain.empty() ? value : plain;  // empty: not finite
+}
 
 // Flags of gflags, glog and other libraries are not the program's.
 std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
@@ -43,7 +56,7 @@ void PrintHelp(const std::string& usage) {
   for (const auto& flag : OwnFlags()) {
     std::string head = "  --" + flag.name;
     if (flag.type != "bool")
-      head += "=" + (flag.default_value.empty() ? "\"\"" : flag.default_value);
+      head += "=" + (flag.default_value.empty() ? "\"\"" : PlainValue(flag, flag.default_value));
     else
       head += flag.default_value == "true" ? "  (on; --no" + flag.name + " is off)" : "  (off)";
     std::cout << head << "\n";
@@ -82,11 +95,11 @@ void ParseFlags(const std::string& usage, int* argc, char*** argv) {
     if (argument == "--") break;
     if (argument == "--help" || argument == "-help" || argument == "-h") {
       PrintHelp(usage);
-      std::exit(kExitDone);
+      std::exit(FlushStdout() ? kExitDone : kExitFailed);
     }
     if (argument == "--version" || argument == "-version") {
       std::cout << ProgramName() << " " << RIGEL_VERSION << "\n";
-      std::exit(kExitDone);
+      std::exit(FlushStdout() ? kExitDone : kExitFailed);
     }
   }
   gflags::ParseCommandLineNonHelpFlags(argc, argv, true);
@@ -97,8 +110,8 @@ void ParseFlags(const std::string& usage, int* argc, char*** argv) {
 }
 
 int UsageError(const std::string& message) {
-  std::cerr << ProgramName() << ": " << message << "\n"
-            << "Try '" << ProgramName() << " --help'.\n";
+  std::cerr << ProgramName() << ": " << message << "\n";
+  PointToHelp();
   return kExitUsage;
 }
 
@@ -107,19 +120,23 @@ std::vector<std::pair<std::string, std::string>> FlagValues(
   std::vector<std::pair<std::string, std::string>> values;
   for (const auto& flag : OwnFlags()) {
     if (std::find(without.begin(), without.end(), flag.name) == without.end()) {
-      values.emplace_back(flag.name, flag.current_value);
+      values.emplace_back(flag.name, PlainValue(flag, flag.current_value));
     }
   }
   return values;
 }
 
+bool FlushStdout() {
+  if (std::cout.flush()) return true;
+  std::cerr << ProgramName() << ": stdout: cannot be written\n";
+  return false;
+}
+
 bool WriteOutput(const std::string& path, const std::string& text) {
   if (path.empty()) return true;
   if (path == "-") {
-    std::cout << text << std::flush;
-    if (std::cout) return true;
-    std::cerr << ProgramName() << ": stdout: cannot be written\n";
-    return false;
+    std::cout << text;
+    return FlushStdout();
   }
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (file == nullptr) {

@@ -7,6 +7,7 @@
 
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rigel {
@@ -16,8 +17,7 @@ inline constexpr int kExitFailed = 1;
 inline constexpr int kExitUsage = 2;
 
 // Parses the flags. `usage` is the text above the list of flags in --help. Ends the program itself
-// on
-// --help and --version (0) and on a flag that does not exist, a value that does not parse or an
+// on --help and --version (0) and on a flag that does not exist, a value that does not parse or an
 // argument that is not a flag (2).
 void ParseFlags(const std::string& usage, int* argc, char*** argv);
 
@@ -27,6 +27,10 @@ int UsageError(const std::string& message);
 // The program's own flags with their values, in alphabetical order, without those named.
 std::vector<std::pair<std::string, std::string>> FlagValues(
     const std::vector<std::string>& without);
+
+// Sends what was written to std::cout on its way. False with a message on stderr if stdout is
+// closed or full.
+bool FlushStdout();
 
 // Writes to a file, or to stdout if `path` is "-"; nothing if it is empty. False with a message on
 // stderr if that fails.

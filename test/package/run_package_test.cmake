@@ -46,6 +46,7 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${build} -G ${rigel_CMAKE_G
     -DCMAKE_CXX_COMPILER=${rigel_CMAKE_CXX_COMPILER}
     -DCMAKE_CXX_FLAGS=${rigel_CMAKE_CXX_FLAGS}
     -DCMAKE_BUILD_TYPE=${RIGEL_CONFIG}
+    -DRIGEL_README=${CMAKE_CURRENT_LIST_DIR}/../../README.md
     -DCMAKE_RUNTIME_OUTPUT_DIRECTORY=${build}/bin
     -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
     "-DCMAKE_PREFIX_PATH=${prefix}\;${rigel_CMAKE_PREFIX_PATH}"
@@ -55,4 +56,7 @@ run(${CMAKE_COMMAND} --build ${build} --config ${RIGEL_CONFIG})
 
 find_program(consumer consumer PATHS ${build}/bin ${build}/bin/${RIGEL_CONFIG} NO_DEFAULT_PATH REQUIRED)
 run(${consumer})
+message(STATUS "${output}")
+find_program(example readme_example PATHS ${build}/bin ${build}/bin/${RIGEL_CONFIG} NO_DEFAULT_PATH REQUIRED)
+run(${example})
 message(STATUS "${output}")
