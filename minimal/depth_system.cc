@@ -114,6 +114,7 @@ template <RotationModel kModel>
 int DepthSystem<kModel>::Determinant(double* coefficients) const {
   constexpr int D = kEntryDegree;
   for (int k = 0; k <= kMaxDegree; ++k) coefficients[k] = 0.0;
+  if (!(reference_->parallax2 > kNoParallax2)) return 0;
 
   // f(i,0) f(j,1) - f(i,1) f(j,0) of rows i and j.
   const auto minor = [this](int i, int j, double* m) {

@@ -34,6 +34,9 @@ class DirectSample {
   const Row& operator[](int r) const { return rows_[r]; }
   bool deflated() const { return deflated_; }
 
+  // False if no match moves: nothing can be said of translation.
+  bool has_parallax() const { return reference_->parallax2 > kNoParallax2; }
+
   // Adds the motion with z = tan(a/2): R exact from the angle, t from the null vector. Adds
   // nothing if that does not exist.
   void AddSolution(double z, Solutions* solutions) const;

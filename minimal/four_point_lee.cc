@@ -21,6 +21,7 @@ void Minor(const double* p0, const double* q0, const double* p1, const double* q
 int Solve4ptLee(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
   solutions->clear();
   const DirectSample rows(matches, sample);
+  if (!rows.has_parallax()) return 0;
   // (1 + z^2) times each entry; k of a deflated sample is divided by z.
   double x[4][3], y[4][3], z[4][3], k[4][3];
   for (int r = 0; r < 4; ++r) {

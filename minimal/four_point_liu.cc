@@ -10,6 +10,7 @@ namespace rigel {
 int Solve4ptLiu(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
   solutions->clear();
   const DirectSample rows(matches, sample);
+  if (!rows.has_parallax()) return 0;
   // Columns of t_x, t_y, t_z and 1 as p + q a; k of a deflated sample is divided by a.
   double p[4][4], q[4][4];
   for (int r = 0; r < 4; ++r) {

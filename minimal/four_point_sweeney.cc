@@ -8,6 +8,7 @@ namespace rigel {
 int Solve4ptSweeney(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
   solutions->clear();
   const DirectSample rows(matches, sample);
+  if (!rows.has_parallax()) return 0;
   // Columns of t'_x and t'_z times sqrt(1 + z^2), of t'_y and 1 times 1 + z^2; k of a deflated
   // sample is divided by z.
   double x[4][2], z[4][2], y[4][2], k[4][3];

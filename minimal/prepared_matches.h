@@ -21,6 +21,10 @@
 
 namespace rigel {
 
+// Below this squared sine of the angle between its aligned rays a match does not move beyond rounding.
+// A sample whose matches all stay says nothing of translation: solvers return no solution.
+inline constexpr double kNoParallax2 = 1e-18;
+
 struct PreparedMatch {
   double X0, Xc, Xs, Yc, Ys, Z0;
   double K0, Kc, Ks;

@@ -17,9 +17,12 @@
 // E gives two rotations; each takes t, with its scale and sign, from the linear system
 // (R x_i x x_j) . t = -k of all matches. Both are returned, the one that fits better first.
 //
-// Units: t in metres. Degenerate, returns nothing: a central rig's sample (one centre in all)
-// has no scale and is solved for the direction only, has_scale false; pure translation with
-// intra-camera matches likewise; no motion at all leaves E = 0 undetermined.
+// Rigs: two cameras and intra-camera matches only are rank 14 (of 17) and still determine all,
+// scale included, for R other than I. A central sample (one centre in all) and pure translation
+// seen by intra-camera matches have no scale: has_scale is false. Returns nothing where E is not
+// determined: no motion at all; and R = I exactly with two cameras and inter-camera matches only.
+//
+// Units: t in metres. No rank decision depends on image noise: all zeros are the rig's.
 #ifndef RIGEL_MINIMAL_SEVENTEEN_POINT_LI_H_
 #define RIGEL_MINIMAL_SEVENTEEN_POINT_LI_H_
 

@@ -9,14 +9,18 @@
 // multiplication by one unknown as a 20 x 20 matrix, whose characteristic polynomial is that
 // polynomial.
 //
-// R is rebuilt as the exact rotation ExpSO3(r), t stays that of the linearized system, so both
-// are biased; see the test for how much.
+// Each root is polished by Newton's method on M(r) (t, w)' = 0; R is rebuilt as the exact rotation
+// ExpSO3(r). Both stay biased by the linearization. At 1 degree of rotation, without noise, the
+// best solution is off by 0.010 (inter-camera) or 0.026 degrees (intra-camera, two cameras) in
+// rotation, 0.15 or 0.25 degrees in direction (medians, random axis; 100 times that at 10 degrees).
 //
 // Intra-camera samples: r = 0, t = 0 is a root whatever the matches are, a double one if the
-// centres are on one line. It is divided out. Pure translation of such a sample is a multiple root
-// there; it is tested for directly and returned without scale.
+// centres are on one line. It is never returned; roots near it are refined on the matrix, because
+// the polynomial's coefficients do not tell them apart. Pure translation of such a sample is a
+// multiple root there; it is tested for directly and returned without scale.
 //
-// Units: r in radians, t in metres. Degenerate, returns nothing: one centre in all.
+// Units: r in radians, t in metres. Degenerate, returns nothing: one centre in all; no motion seen
+// by intra-camera matches.
 #ifndef RIGEL_MINIMAL_SIX_POINT_VENTURA_H_
 #define RIGEL_MINIMAL_SIX_POINT_VENTURA_H_
 

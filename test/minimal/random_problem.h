@@ -31,9 +31,11 @@ using CameraPairs = std::vector<std::pair<int, int>>;
 
 inline CameraPairs InterPairs() { return {{0, 1}, {1, 0}}; }
 inline CameraPairs IntraPairs() { return {{0, 0}, {1, 1}}; }
+inline CameraPairs IntraPairsOfThree() { return {{0, 0}, {1, 1}, {2, 2}}; }
 
 struct ProblemOptions {
   int num_matches = 4;
+  int num_cameras = 2;                 // or 3: one more above and ahead of the others
   CameraPairs cameras = InterPairs();  // match k is of cameras[k % size]
 
   // The rotation is about an axis near body Y, or one uniform on the sphere, by an angle uniform
@@ -80,11 +82,13 @@ inline bool MakeMatch(const Rig& rig, const Pose& truth, int camera1, int camera
 inline RandomProblem MakeRandomProblem(uint64_t seed, const ProblemOptions& options) {
   Random rng = Random::Stream(20240601, seed);
   RandomProblem problem;
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < options.num_cameras; ++k) {
     RigCamera camera;
     camera.intrinsics = {400.0, 400.0, 320.0, 240.0, 640, 480};
     camera.Q = ExpSO3(0.1 * rng.NormalVector3());
-    camera.s = Eigen::Vector3d(k - 0.5, 0.0, 0.0) + 0.05 * rng.NormalVector3();
+    const Eigen::Vector3d centre =
+        k < 2 ? Eigen::Vector3d(k - 0.5, 0.0, 0.0) : Eigen::Vector3d(0.0, 0.4, 0.3);
+    camera.s = centre + 0.05 * rng.NormalVector3();
     problem.rig.cameras.push_back(camera);
   }
 

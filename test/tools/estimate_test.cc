@@ -1,0 +1,288 @@
+// rigel_estimate: what it says of pairs of all kinds.
+#include <cmath>
+
+#include "rigel/test/tools/tools_test.h"
+
+namespace rigel {
+namespace {
+
+using testing::AllOf;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+using testing::StartsWith;
+using testing::UnorderedElementsAre;
+
+constexpr char kHeader[] =
+    "format rigmatch 1\n"
+    "camera 0 pinhole 400 400 320 240 640 480 1 0 0 0 -0.5 0 0\n"
+    "camera 1 pinhole 400 400 320 240 640 480 1 0 0 0 0.5 0 0\n";
+
+std::string Matches(const std::vector<std::string>& rows) {
+  std::string text = "matches " + std::to_string(rows.size()) + "\n";
+  for (const std::string& row : rows) text += row + "\n";
+  return text;
+}
+
+class EstimateTest : public ToolsTest {
+ protected:
+  // The one pair of a run that reads one file.
+  Json OnlyPair(const Args& args) {
+    const Run run = RunTool("estimate", args + Args{"--json=-"});
+    EXPECT_EXIT_CODE(run, 0);
+    const Json report = ParseReport(run.out);
+    if (!report.is_object() || report["pairs"].size() != 1) {
+      ADD_FAILURE() << "not one pair: " << run.out;
+      return Json::object();
+    }
+    return report["pairs"][0];
+  }
+};
+
+TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
+  const std::string matches =
+      Simulate("in", {"--pairs=3", "--inter_share=0.5", "--outlier_share=0.2"});
+  const Run run = RunTool("estimate", {"--matches=" + matches, "--json=-"});
+  ASSERT_EXIT_CODE(run, 0);
+  EXPECT_THAT(run.err, IsEmpty());
+  const Json report = ParseReport(run.out);
+  EXPECT_THAT(Keys(report), UnorderedElementsAre("format", "options", "pairs"));
+  EXPECT_EQ(report["format"], "rigel-estimate 1");
+  EXPECT_EQ(report["options"]["solver"], "4pt-axis");
+  EXPECT_EQ(report["options"]["confidence"], "0.9999");
+  ASSERT_EQ(report["pairs"].size(), 3u);
+  for (const Json& pair : report["pairs"]) {
+    EXPECT_THAT(Keys(pair),
+                UnorderedElementsAre(
+                    "pair", "status", "matches", "inliers", "iterations", "time_ms", "raw",
+                    "refined", "median_residual_px", "noise_px", "rotation_observable",
+                    "translation_observable", "scale_observable", "rotation_sd_deg",
+                    "translation_dir_sd_deg", "covariance", "relative_scale_sd"));
+    EXPECT_EQ(pair["status"], "ok");
+    EXPECT_EQ(pair["matches"], 200);
+    EXPECT_GE(pair["inliers"], 150);
+    EXPECT_LE(pair["inliers"], 170);
+    EXPECT_EQ(pair["noise_px"], 0.5);
+    for (const char* motion : {"raw", "refined"}) {
+      ASSERT_EQ(pair[motion]["q_wxyz"].size(), 4u);
+      ASSERT_EQ(pair[motion]["t"].size(), 3u);
+      // One degree about Y, one metre along Z.
+      const double y = pair[motion]["q_wxyz"][2];
+      EXPECT_NEAR(2 * std::asin(y) * 180 / M_PI, 1.0, 0.3);
+      EXPECT_NEAR(pair[motion]["t"][2], 1.0, 0.1);
+    }
+    ASSERT_EQ(pair["covariance"].size(), 6u);
+    for (const Json& row : pair["covariance"]) EXPECT_EQ(row.size(), 6u);
+    EXPECT_LT(pair["rotation_sd_deg"], 0.1);
+    EXPECT_LT(pair["translation_dir_sd_deg"], 2.0);
+    EXPECT_TRUE(pair["scale_observable"].get<bool>());
+  }
+}
+
+TEST_F(EstimateTest, WithoutRefinementOnlyTheRawMotion) {
+  const std::string matches = Simulate("in", {"--pairs=1", "--inter_share=0.5"});
+  const Json pair = OnlyPair({"--matches=" + matches, "--refine=none"});
+  EXPECT_THAT(Keys(pair), UnorderedElementsAre("pair", "status", "matches", "inliers", "iterations",
+                                               "time_ms", "raw"));
+  EXPECT_EQ(pair["status"], "ok");
+}
+
+TEST_F(EstimateTest, ScaleOfIntraMatchesIsNotReportedAsIfItWereKnown) {
+  const std::string matches = Simulate("in", {"--pairs=1", "--num_matches=100"});
+  const Json pair = OnlyPair({"--matches=" + matches});
+  EXPECT_TRUE(pair["translation_observable"].get<bool>());
+  EXPECT_FALSE(pair["scale_observable"].get<bool>());
+  const Run run = RunTool("estimate", {"--matches=" + matches});
+  EXPECT_THAT(run.out, HasSubstr("not observable"));
+  EXPECT_THAT(run.out, HasSubstr("Rt-"));
+}
+
+TEST_F(EstimateTest, CsvHasOneRowAPairOfTheSameColumns) {
+  const std::string matches = Simulate("in", {"--pairs=3", "--num_matches=40"});
+  // One that fails, with what CSV has to quote in its name.
+  WriteText(matches + "/a, \"b\".matches", kHeader + std::string("axis 0 1 0\nmatches 0\n"));
+  const Run run = RunTool("estimate", {"--matches=" + matches, "--csv=-"});
+  ASSERT_EXIT_CODE(run, 0);
+  const std::vector<std::string> lines = Lines(run.out);
+  ASSERT_EQ(lines.size(), 5u);
+  EXPECT_THAT(lines[0], StartsWith("pair,status,"));
+  const auto commas = [](const std::string& line) {
+    int count = 0;
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"') quoted = !quoted;
+      if (c == ',' && !quoted) ++count;
+    }
+    return count;
+  };
+  for (const std::string& line : lines) EXPECT_EQ(commas(line), commas(lines[0])) << line;
+  EXPECT_THAT(lines[4], HasSubstr("/a, \"\"b\"\".matches\",too few matches,"));
+  EXPECT_THAT(run.out, Not(HasSubstr("nan")));
+  EXPECT_THAT(run.out, Not(HasSubstr("inf")));
+}
+
+TEST_F(EstimateTest, TooFewMatchesAreAnAnswer) {
+  WriteText(Path("in/none.matches"), kHeader + std::string("axis 0 1 0\nmatches 0\n"));
+  WriteText(Path("in/three.matches"),
+            kHeader + std::string("axis 0 1 0\n") +
+                Matches({"0 100 100 0 110 100 0", "1 200 90 1 210 91 0", "0 50 60 0 55 60 0"}));
+  const Run run = RunTool("estimate", {"--matches=" + Path("in"), "--solver=4pt-axis"});
+  EXPECT_EXIT_CODE(run, 0);
+  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("none.matches: 0 matches, 4pt-axis needs 4"),
+                                          HasSubstr("three.matches: 3 matches, 4pt-axis needs 4")));
+  EXPECT_THAT(run.out, HasSubstr("too few matches"));
+  const Json report =
+      ParseReport(RunTool("estimate", {"--matches=" + Path("in"), "--json=-"}).out);
+  for (const Json& pair : report["pairs"]) {
+    EXPECT_THAT(Keys(pair), UnorderedElementsAre("pair", "status", "message", "matches"));
+    EXPECT_EQ(pair["status"], "too few matches");
+  }
+}
+
+TEST_F(EstimateTest, DegenerateMatchesEndInAStatusWithEverySolver) {
+  const std::string priors = "axis 0 1 0\ngravity1 0 1 0\ngravity2 0 1 0\nnormal 0 1 0\n";
+  // All the same; all the same and in the middle of the image; no motion at all; epipole only;
+  // far outside of the image.
+  const std::vector<std::vector<std::string>> kinds = {
+      std::vector<std::string>(40, "0 100 100 0 110 101 0"),
+      std::vector<std::string>(40, "0 320 240 0 320 240 0"),
+      {"0 100 100 0 100 100 0", "1 200 300 1 200 300 0", "0 500 60 0 500 60 0",
+       "1 333 111 1 333 111 0", "0 9 222 0 9 222 0", "1 600 400 1 600 400 0", "0 77 7 0 77 7 0",
+       "1 123 321 1 123 321 0"},
+      std::vector<std::string>(20, "0 320 240 1 320 240 0"),
+      std::vector<std::string>(20, "0 1e300 1e300 1 -1e300 1e-300 0"),
+      std::vector<std::string>(20, "0 1e8 -1e8 0 1e8 1e8 0"),
+  };
+  for (size_t k = 0; k < kinds.size(); ++k) {
+    WriteText(Path("in/" + std::to_string(k) + ".matches"), kHeader + priors + Matches(kinds[k]));
+  }
+  const Run usage = RunTool("estimate", {"--matches=x", "--solver=?"});
+  const std::string marker = "expected one of ";
+  ASSERT_THAT(usage.err, HasSubstr(marker));
+  std::string names = usage.err.substr(usage.err.find(marker) + marker.size());
+  names = names.substr(0, names.find('\n')) + ", ";
+  for (size_t begin = 0; begin < names.size();) {
+    const size_t end = names.find(", ", begin);
+    const std::string solver = names.substr(begin, end - begin);
+    begin = end + 2;
+    const Run run = RunTool("estimate", {"--matches=" + Path("in"), "--solver=" + solver,
+                                         "--max_iterations=200", "--json=-"});
+    EXPECT_EXIT_CODE(run, 0);
+    const Json report = ParseReport(run.out);
+    ASSERT_EQ(report["pairs"].size(), kinds.size());
+    for (const Json& pair : report["pairs"]) {
+      // Matches that all agree on standing still may be solved; a direction must not come of it.
+      EXPECT_FALSE(pair.value("translation_observable", false)) << solver << " " << pair.dump(2);
+    }
+  }
+}
+
+TEST_F(EstimateTest, PairWithoutThePriorOfItsSolverFailsWithAMessage) {
+  const std::string directory = Simulate("in", {"--pairs=1", "--num_matches=40"});
+  for (const auto& [solver, words] : std::vector<std::pair<std::string, std::string>>{
+           {"3pt", "no normal"}, {"3pt-approx", "no normal"}}) {
+    const Run run = RunTool("estimate", {"--matches=" + directory, "--solver=" + solver});
+    EXPECT_EXIT_CODE(run, 0);
+    EXPECT_THAT(Lines(run.err),
+                ElementsAre(AllOf(HasSubstr("000000.matches: "), HasSubstr(solver), HasSubstr(words))));
+    EXPECT_THAT(run.out, HasSubstr("invalid input"));
+  }
+  // The body's axes stand in.
+  EXPECT_EQ(OnlyPair({"--matches=" + directory, "--solver=3pt", "--prior=body"})["status"], "ok");
+}
+
+TEST_F(EstimateTest, PriorFromTheTruthNeedsTheTruth) {
+  WriteText(Path("in/a.matches"), kHeader + std::string("matches 0\n"));
+  const Run run = RunTool("estimate", {"--matches=" + Path("in"), "--prior=truth"});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, HasSubstr("a.matches: no truth"));
+}
+
+TEST_F(EstimateTest, ResultsDoNotDependOnThreadsAndRuns) {
+  const std::string matches =
+      Simulate("in", {"--pairs=8", "--inter_share=0.3", "--outlier_share=0.4"});
+  const auto estimate = [&](const Args& more) {
+    const Run run = RunTool("estimate", Args{"--matches=" + matches, "--json=-"} + more);
+    EXPECT_EXIT_CODE(run, 0);
+    return WithoutTimes(ParseReport(run.out));
+  };
+  const Json one = estimate({"--threads=1"});
+  EXPECT_EQ(one, estimate({"--threads=1"}));
+  EXPECT_EQ(one, estimate({"--threads=4"}));
+  EXPECT_NE(one["pairs"], estimate({"--seed=2"})["pairs"]);
+}
+
+TEST_F(EstimateTest, DashWritesOnlyTheReportToStdout) {
+  const std::string matches = Simulate("in", {"--pairs=1", "--num_matches=40"});
+  const Run json = RunTool("estimate", {"--matches=" + matches, "--json=-", "--csv=" + Path("csv")});
+  EXPECT_THAT(json.out, StartsWith("{"));
+  ParseReport(json.out);
+  const Run csv = RunTool("estimate", {"--matches=" + matches, "--json=" + Path("json"), "--csv=-"});
+  EXPECT_THAT(csv.out, StartsWith("pair,"));
+  EXPECT_THAT(Lines(csv.out), SizeIs(2));
+  EXPECT_EQ(Lines(ReadText(Path("csv"))).size(), 2u);
+  EXPECT_EQ(WithoutTimes(ParseReport(ReadText(Path("json")))), WithoutTimes(ParseReport(json.out)));
+}
+
+TEST_F(EstimateTest, TableFitsIntoAHundredColumns) {
+  // Long names, large angles, statuses of all lengths.
+  const std::string matches =
+      Simulate("in", {"--pairs=2", "--rotation_deg=12", "--inter_share=1", "--num_matches=3000"});
+  WriteText(matches + "/a_very_long_name_of_a_sequence_000000_000001.matches",
+            kHeader + std::string("axis 0 1 0\nmatches 0\n"));
+  WriteText(matches + "/\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc"
+                      "\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6.matches",
+            kHeader + std::string("axis 0 1 0\nmatches 0\n"));
+  // Outliers only: whatever numbers come of them.
+  const std::string noise = Simulate(
+      "noise", {"--pairs=5", "--num_matches=30", "--outlier_share=1", "--inter_share=0.5"});
+  const Run run = RunTool("estimate", {"--matches=" + matches + "," + noise});
+  EXPECT_EXIT_CODE(run, 0);
+  EXPECT_LE(Width(run.out), 100u) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("...00000_000001")) << run.out;
+}
+
+TEST_F(EstimateTest, OptionsChangeTheResult) {
+  // Large noise and gravity off by 2 degrees, so that every option shows.
+  const std::string matches = Simulate(
+      "in", {"--pairs=1", "--num_matches=60", "--inter_share=0.5", "--outlier_share=0.2"});
+  const Args base = {"--matches=" + matches, "--solver=4pt"};
+  const Json result = OnlyPair(base)["refined"];
+  for (const Args& change : std::vector<Args>{{"--refine=prior"},
+                                              {"--refine=depths"},
+                                              {"--refine=prior-depths"},
+                                              {"--residual=algebraic"},
+                                              {"--residual=angular"},
+                                              {"--loss=none"},
+                                              {"--loss=huber"},
+                                              {"--loss=tukey"},
+                                              {"--loss=truncated"},
+                                              {"--use=intra"},
+                                              {"--use=inter"},
+                                              {"--use_prior_in_refine", "--prior_sigma_deg=0.01"},
+                                              {"--threshold_px=1"}}) {
+    const Json pair = OnlyPair(base + change);
+    ASSERT_EQ(pair["status"], "ok") << change[0];
+    EXPECT_NE(pair["refined"], result) << change[0];
+  }
+}
+
+TEST_F(EstimateTest, ExactPriorIsKeptExactly) {
+  const std::string matches = Simulate(
+      "in", {"--pairs=1", "--num_matches=60", "--inter_share=0.5", "--motion=planar"});
+  for (const char* form : {"--refine=prior", "--refine=prior-depths"}) {
+    const Json axis = OnlyPair({"--matches=" + matches, "--solver=4pt-axis", form})["refined"];
+    EXPECT_NEAR(axis["q_wxyz"][1], 0, 1e-12) << form;
+    EXPECT_NEAR(axis["q_wxyz"][3], 0, 1e-12) << form;
+    const Json planar = OnlyPair({"--matches=" + matches, "--solver=3pt", form})["refined"];
+    EXPECT_NEAR(planar["q_wxyz"][1], 0, 1e-12) << form;
+    EXPECT_NEAR(planar["q_wxyz"][3], 0, 1e-12) << form;
+    EXPECT_NEAR(planar["t"][1], 0, 1e-12) << form;
+  }
+}
+
+}  // namespace
+}  // namespace rigel
