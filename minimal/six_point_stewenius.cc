@@ -149,7 +149,7 @@ int RealRotations(const Equations& equations, const double* centre, Eigen::Vecto
       return RealRotations<7, 76, 48>(equations, kLeading, 4, centre, r);
     }
     case 4: {  // 4 + 2, 4 + 1 + 1
-      constexpr int kLeading[] = {36, 28, 12, 4};
+      constexpr int kLeading[] = {36, 28, 11, 5};
       return RealRotations<7, 104, 40>(equations, kLeading, 4, centre, r);
     }
     case 10: {  // 5 + 1

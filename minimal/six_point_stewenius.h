@@ -30,7 +30,7 @@
 // Units: t in metres. Degenerate, returns nothing or misses: one centre in all; no motion seen by
 // intra-camera matches; intra-camera samples of three or more cameras on one line without three
 // matches of one camera (the line of zero baselines again).
-// Takes 0.3 MB of the stack.
+// Needs about 0.3 MB of stack.
 #ifndef RIGEL_MINIMAL_SIX_POINT_STEWENIUS_H_
 #define RIGEL_MINIMAL_SIX_POINT_STEWENIUS_H_
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <numeric>
 #include <string_view>
@@ -63,6 +64,17 @@ double QuartileDistance(std::vector<double> values) {
   if (values.size() < 4) return 0.0;
   std::sort(values.begin(), values.end());
   return 0.5 * (values[values.size() * 3 / 4] - values[values.size() / 4]);
+}
+
+std::string ProcessorName() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const size_t colon = line.find(": ");
+    if (line.rfind("model name", 0) == 0 && colon != std::string::npos) {
+      return line.substr(colon + 2);
+    }
+  }
+  return "unknown processor";
 }
 
 std::vector<Problem> MakeProblems(const SolverInfo& solver, const SolverBenchmarkOptions& options,
@@ -204,6 +216,32 @@ std::vector<SolverBenchmarkRow> BenchmarkSolver(const SolverInfo& solver,
     if (reference > 0) rows.back().ratio = rows.back().median_us / reference;
   }
   return rows;
+}
+
+std::string PaperTable1(const std::vector<SolverBenchmarkRow>& rows) {
+  constexpr struct {
+    const char* solver;
+    double mean_us;
+    double median_us;
+  } kPaper[] = {{"17pt-li", 50.2704, 48},        {"6pt-stewenius", 3759.8892, 3744},
+                {"6pt-ventura", 57.4035, 53},    {"4pt-lee", 28.0242, 27},
+                {"4pt-liu", 8.2684, 7},          {"4pt-approx", 16.2423, 10},
+                {"4pt-axis-approx", 13.6533, 8}, {"3pt-approx", 18.6852, 12}};
+  Table table;
+  table.AddHeader({"Table 1 of the paper, us", "paper", "", "here", "", "times"});
+  table.AddHeader({"mean and median", "mean", "median", "mean", "median", "faster"});
+  bool any = false;
+  for (const auto& entry : kPaper) {
+    for (const SolverBenchmarkRow& row : rows) {
+      if (row.solver != entry.solver || row.matches != "intra" || !(row.median_us > 0)) continue;
+      any = true;
+      table.AddRow({row.solver, FormatNumber(entry.mean_us, 2), FormatNumber(entry.median_us, 0),
+                    FormatNumber(row.mean_us, 3), FormatNumber(row.median_us, 3),
+                    FormatNumber(entry.median_us / row.median_us, 0)});
+    }
+  }
+  if (!any) return "";
+  return table.Format() + "paper: AMD R9-7945HX 2.50 GHz; here: " + ProcessorName() + "\n";
 }
 
 std::string SolverBenchmarkTable(const std::vector<SolverBenchmarkRow>& rows) {

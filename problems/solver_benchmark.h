@@ -47,6 +47,10 @@ std::vector<SolverBenchmarkRow> BenchmarkSolver(const SolverInfo& solver,
 // Median microseconds of a 4x4 LU solve by Eigen with partial pivoting: what ratios refer to.
 double ReferenceKernelMicroseconds();
 
+// The paper's Table 1 (mean and median, on its authors' machine) beside the medians of the same
+// solvers here, intra-camera samples. Empty if none of them was run.
+std::string PaperTable1(const std::vector<SolverBenchmarkRow>& rows);
+
 std::string SolverBenchmarkTable(const std::vector<SolverBenchmarkRow>& rows);
 // Format "rigel-benchmark 1": docs/formats.md.
 std::string SolverBenchmarkJson(const std::vector<SolverBenchmarkRow>& rows,

@@ -4,6 +4,7 @@
 
 #include <gflags/gflags.h>
 
+#include "rigel/problems/opengv_peers.h"
 #include "rigel/problems/solver_benchmark.h"
 #include "rigel/problems/table.h"
 #include "rigel/tools/tool.h"
@@ -41,14 +42,19 @@ int Run() {
   if (!std::isfinite(FLAGS_rotation_deg)) return UsageError("--rotation_deg: expected a number");
   std::vector<const SolverInfo*> solvers;
   for (const std::string& name : SplitCommas(FLAGS_solvers)) {
-    solvers.push_back(FindSolver(name));
-    if (solvers.back() == nullptr) {
+    const SolverInfo* found = FindSolver(name);
+    for (const SolverInfo& peer : OpenGvPeers()) {
+      if (name == peer.name) found = &peer;
+    }
+    solvers.push_back(found);
+    if (found == nullptr) {
       return UsageError("--solvers: there is no solver '" + name + "'; expected some of " +
                         SolverNames());
     }
   }
   if (solvers.empty()) {
     for (const SolverInfo& solver : SolverCatalogue()) solvers.push_back(&solver);
+    for (const SolverInfo& solver : OpenGvPeers()) solvers.push_back(&solver);
   }
 
   bool ok = true;

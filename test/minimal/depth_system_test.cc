@@ -12,6 +12,7 @@
 #include "rigel/core/angles.h"
 #include "rigel/core/epipolar.h"
 #include "rigel/core/metrics.h"
+#include "rigel/core/random.h"
 #include "rigel/minimal/direct_system.h"
 #include "rigel/minimal/polynomial.h"
 #include "rigel/minimal/three_point.h"
@@ -127,7 +128,9 @@ TEST(DepthSystem, ExactFourPointDeterminantIsThatOfTheCoreRows) {
       const int degree = Determinant<RotationModel::kExact>(matches, 4, &c);
       ASSERT_EQ(degree, test.deflated ? 5 : 6);
       const double size = LargestCoefficient(c, degree);
-      if (test.deflated) EXPECT_EQ(c[6], 0.0) << "above the degree";
+      if (test.deflated) {
+        EXPECT_EQ(c[6], 0.0) << "above the degree";
+      }
       for (const double z : {-2.0, -0.3, -0.01, 0.0, 0.02, 0.5, 1.0}) {
         const double angle = 2.0 * std::atan(z);
         const Matrix3d R = matches.alignment().Rotation(std::cos(angle), std::sin(angle));
@@ -268,8 +271,10 @@ TEST(DepthSystem, PlanarReferenceOnTheHorizon) {
     for (int k = 0; k < 3; ++k) {
       const int i = k % 2;
       const int j = 1 - i;
-      const double depth = k == 0 ? 4.0 : random.Uniform(8.0, 30.0);
-      Vector3d X2(random.Uniform(-0.5, 0.5) * depth, random.Uniform(-0.4, 0.4) * depth, depth);
+      const double depth = k == 0 ? 3.0 : random.Uniform(20.0, 30.0);
+      const double x = random.Uniform(-0.5, 0.5);
+      const double y = random.Uniform(-0.4, 0.4);
+      Vector3d X2(x * depth, y * depth, depth);
       X2 += pair.rig.cameras[j].s;
       if (k == 0) X2.y() = pair.rig.cameras[j].s.y();
       Match match;

@@ -14,7 +14,7 @@ using testing::StartsWith;
 using testing::UnorderedElementsAre;
 
 Json Benchmark(const Args& args) {
-  const Run run = RunTool("benchmark", args + Args{"--json=-"});
+  const Outcome run = RunTool("benchmark", args + Args{"--json=-"});
   EXPECT_EXIT_CODE(run, 0);
   EXPECT_THAT(run.err, IsEmpty());
   return ParseReport(run.out);
@@ -35,15 +35,15 @@ TEST(BenchmarkTest, JsonHasOneRowForEachKindOfSample) {
     EXPECT_GE(row["found_truth"], 0.0);
     EXPECT_LE(row["found_truth"], 1.0);
   }
-  EXPECT_THAT(rows, UnorderedElementsAre(std::make_pair("4pt", "intra"),
-                                         std::make_pair("4pt", "inter"),
-                                         std::make_pair("3pt-approx", "intra"),
-                                         std::make_pair("3pt-approx", "inter")));
+  EXPECT_THAT(rows,
+              UnorderedElementsAre(std::make_pair("4pt", "intra"), std::make_pair("4pt", "inter"),
+                                   std::make_pair("3pt-approx", "intra"),
+                                   std::make_pair("3pt-approx", "inter")));
   EXPECT_EQ(report["solvers"].size(), 4u);
 }
 
 TEST(BenchmarkTest, AllSolversByDefaultInATableOfAHundredColumns) {
-  const Run run = RunTool("benchmark", {"--trials=20"});
+  const Outcome run = RunTool("benchmark", {"--trials=20"});
   EXPECT_EXIT_CODE(run, 0);
   EXPECT_LE(Width(run.out), 100u) << run.out;
   for (const char* solver :
@@ -57,7 +57,7 @@ TEST(BenchmarkTest, AllSolversByDefaultInATableOfAHundredColumns) {
 
 TEST(BenchmarkTest, ReportIsWrittenBesideTheTable) {
   const std::string path = testing::TempDir() + "/rigel_benchmark_test.json";
-  const Run run = RunTool("benchmark", {"--solvers=3pt", "--trials=5", "--json=" + path});
+  const Outcome run = RunTool("benchmark", {"--solvers=3pt", "--trials=5", "--json=" + path});
   EXPECT_EXIT_CODE(run, 0);
   EXPECT_THAT(run.out, HasSubstr("reference kernel"));
   EXPECT_EQ(ParseReport(ReadText(path))["solvers"].size(), 2u);
@@ -79,9 +79,9 @@ TEST(BenchmarkTest, ExactSolversFindTheTruth) {
 }
 
 TEST(BenchmarkTest, PolishedSolversFindTheTruthAtOneDegree) {
-  const Json report = Benchmark(
-      {"--solvers=4pt-approx-polished,4pt-axis-approx-polished,3pt-approx-polished",
-       "--trials=1000"});
+  const Json report =
+      Benchmark({"--solvers=4pt-approx-polished,4pt-axis-approx-polished,3pt-approx-polished",
+                 "--trials=1000"});
   for (const Json& row : report["solvers"]) {
     EXPECT_GE(row["found_truth"], 0.93) << row.dump();
   }
@@ -92,20 +92,19 @@ TEST(BenchmarkTest, ExactSolversFindTheDirectionOfPureTranslation) {
   const Json report =
       Benchmark({"--solvers=4pt,4pt-axis,3pt", "--trials=1000", "--rotation_deg=0"});
   for (const Json& row : report["solvers"]) {
-    if (row["matches"] == "intra") EXPECT_GE(row["found_direction"], 0.99) << row.dump();
+    if (row["matches"] != "intra") continue;
+    EXPECT_GE(row["found_direction"], 0.99) << row.dump();
   }
 }
 
 TEST(BenchmarkTest, WrongValuesAreUsageErrors) {
   const std::pair<const char*, const char*> wrong[] = {
-      {"--trials=0", "--trials"},
-      {"--trials=-1", "--trials"},
-      {"--trials=many", "trials"},
-      {"--rotation_deg=nan", "--rotation_deg"},
+      {"--trials=0", "--trials"},     {"--trials=-1", "--trials"},
+      {"--trials=many", "trials"},    {"--rotation_deg=nan", "--rotation_deg"},
       {"--solvers=4pt,5pt", "'5pt'"},
   };
   for (const auto& [flag, what] : wrong) {
-    const rigel::Run run = RunTool("benchmark", {flag});
+    const Outcome run = RunTool("benchmark", {flag});
     EXPECT_EXIT_CODE(run, 2);
     EXPECT_THAT(run.err, HasSubstr(what));
     EXPECT_THAT(run.out, IsEmpty());
@@ -113,7 +112,7 @@ TEST(BenchmarkTest, WrongValuesAreUsageErrors) {
 }
 
 TEST(BenchmarkTest, NoProblemInViewIsAFailureAndNoRowOfZeros) {
-  const Run run = RunTool("benchmark", {"--solvers=4pt", "--trials=5", "--rotation_deg=180"});
+  const Outcome run = RunTool("benchmark", {"--solvers=4pt", "--trials=5", "--rotation_deg=180"});
   EXPECT_EXIT_CODE(run, 1);
   EXPECT_THAT(run.err, HasSubstr("--rotation_deg=180"));
   EXPECT_THAT(run.out, IsEmpty());

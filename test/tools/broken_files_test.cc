@@ -110,7 +110,7 @@ class BrokenFilesTest : public ToolsTest {
   }
 
   void ExpectGoodFilesReported(const std::string& tool) {
-    const Run run = RunTool(tool, {"--matches=" + directory_, "--json=-"});
+    const Outcome run = RunTool(tool, {"--matches=" + directory_, "--json=-"});
     EXPECT_EXIT_CODE(run, 1);
     const Json report = ParseReport(run.out);
     if (tool == "estimate") {
@@ -133,7 +133,7 @@ TEST_F(BrokenFilesTest, EachIsToldInOneLineAndTheOthersAreReported) {
     WriteText(directory_ + "/" + broken.name + ".matches", broken.text);
   }
   for (const std::string tool : {"estimate", "compare"}) {
-    const Run run = RunTool(tool, {"--matches=" + directory_});
+    const Outcome run = RunTool(tool, {"--matches=" + directory_});
     EXPECT_EXIT_CODE(run, 1);
     const std::vector<std::string> lines = Lines(run.err);
     EXPECT_EQ(lines.size(), files.size()) << run.err;
@@ -152,10 +152,11 @@ TEST_F(BrokenFilesTest, EachIsToldInOneLineAndTheOthersAreReported) {
 TEST_F(BrokenFilesTest, WhatCannotBeOpenedIsToldToo) {
   std::filesystem::create_symlink("/nonexistent/of/rigel", directory_ + "/dangling.matches");
   for (const std::string tool : {"estimate", "compare"}) {
-    const Run run = RunTool(tool, {"--matches=" + directory_});
+    const Outcome run = RunTool(tool, {"--matches=" + directory_});
     EXPECT_EXIT_CODE(run, 1);
-    EXPECT_THAT(Lines(run.err),
-                testing::ElementsAre(StartsWith(directory_ + "/dangling.matches: cannot be opened")));
+    EXPECT_THAT(
+        Lines(run.err),
+        testing::ElementsAre(StartsWith(directory_ + "/dangling.matches: cannot be opened")));
     ExpectGoodFilesReported(tool);
   }
 }
@@ -173,22 +174,22 @@ TEST_F(BrokenFilesTest, OtherNamesAndFoldersBelowAreNotLookedAt) {
 TEST_F(BrokenFilesTest, MissingFilesAndEmptyDirectories) {
   std::filesystem::create_directory(Path("empty"));
   for (const std::string tool : {"estimate", "compare"}) {
-    const Run missing = RunTool(tool, {"--matches=" + Path("missing")});
+    const Outcome missing = RunTool(tool, {"--matches=" + Path("missing")});
     EXPECT_EXIT_CODE(missing, 1);
     EXPECT_THAT(missing.err, HasSubstr(Path("missing") + ": cannot be opened: No such file"));
     EXPECT_THAT(missing.out, IsEmpty());
 
-    const Run empty = RunTool(tool, {"--matches=" + Path("empty")});
+    const Outcome empty = RunTool(tool, {"--matches=" + Path("empty")});
     EXPECT_EXIT_CODE(empty, 1);
     EXPECT_THAT(empty.err, HasSubstr(Path("empty") + ": no .matches files"));
     EXPECT_THAT(empty.out, IsEmpty());
 
-    const Run commas = RunTool(tool, {"--matches=,,"});
+    const Outcome commas = RunTool(tool, {"--matches=,,"});
     EXPECT_EXIT_CODE(commas, 1);
     EXPECT_THAT(commas.err, HasSubstr("nothing to read"));
 
     // Beside something that is there.
-    const Run both = RunTool(
+    const Outcome both = RunTool(
         tool, {"--matches=" + Path("missing") + "," + directory_ + "/zzz.matches", "--csv=-"});
     EXPECT_EXIT_CODE(both, 1);
     EXPECT_EQ(Lines(both.err).size(), 1u) << both.err;

@@ -31,7 +31,7 @@ class EstimateTest : public ToolsTest {
  protected:
   // The one pair of a run that reads one file.
   Json OnlyPair(const Args& args) {
-    const Run run = RunTool("estimate", args + Args{"--json=-"});
+    const Outcome run = RunTool("estimate", args + Args{"--json=-"});
     EXPECT_EXIT_CODE(run, 0);
     const Json report = ParseReport(run.out);
     if (!report.is_object() || report["pairs"].size() != 1) {
@@ -45,7 +45,7 @@ class EstimateTest : public ToolsTest {
 TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
   const std::string matches =
       Simulate("in", {"--pairs=3", "--inter_share=0.5", "--outlier_share=0.2"});
-  const Run run = RunTool("estimate", {"--matches=" + matches, "--json=-"});
+  const Outcome run = RunTool("estimate", {"--matches=" + matches, "--json=-"});
   ASSERT_EXIT_CODE(run, 0);
   EXPECT_THAT(run.err, IsEmpty());
   const Json report = ParseReport(run.out);
@@ -55,12 +55,12 @@ TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
   EXPECT_EQ(report["options"]["confidence"], "0.9999");
   ASSERT_EQ(report["pairs"].size(), 3u);
   for (const Json& pair : report["pairs"]) {
-    EXPECT_THAT(Keys(pair),
-                UnorderedElementsAre(
-                    "pair", "status", "matches", "inliers", "iterations", "time_ms", "raw",
-                    "refined", "median_residual_px", "noise_px", "rotation_observable",
-                    "translation_observable", "scale_observable", "rotation_sd_deg",
-                    "translation_dir_sd_deg", "covariance", "relative_scale_sd"));
+    EXPECT_THAT(
+        Keys(pair),
+        UnorderedElementsAre("pair", "status", "matches", "inliers", "iterations", "time_ms", "raw",
+                             "refined", "median_residual_px", "noise_px", "rotation_observable",
+                             "translation_observable", "scale_observable", "rotation_sd_deg",
+                             "translation_dir_sd_deg", "covariance", "relative_scale_sd"));
     EXPECT_EQ(pair["status"], "ok");
     EXPECT_EQ(pair["matches"], 200);
     EXPECT_GE(pair["inliers"], 150);
@@ -95,7 +95,7 @@ TEST_F(EstimateTest, ScaleOfIntraMatchesIsNotReportedAsIfItWereKnown) {
   const Json pair = OnlyPair({"--matches=" + matches});
   EXPECT_TRUE(pair["translation_observable"].get<bool>());
   EXPECT_FALSE(pair["scale_observable"].get<bool>());
-  const Run run = RunTool("estimate", {"--matches=" + matches});
+  const Outcome run = RunTool("estimate", {"--matches=" + matches});
   EXPECT_THAT(run.out, HasSubstr("not observable"));
   EXPECT_THAT(run.out, HasSubstr("Rt-"));
 }
@@ -104,7 +104,7 @@ TEST_F(EstimateTest, CsvHasOneRowAPairOfTheSameColumns) {
   const std::string matches = Simulate("in", {"--pairs=3", "--num_matches=40"});
   // One that fails, with what CSV has to quote in its name.
   WriteText(matches + "/a, \"b\".matches", kHeader + std::string("axis 0 1 0\nmatches 0\n"));
-  const Run run = RunTool("estimate", {"--matches=" + matches, "--csv=-"});
+  const Outcome run = RunTool("estimate", {"--matches=" + matches, "--csv=-"});
   ASSERT_EXIT_CODE(run, 0);
   const std::vector<std::string> lines = Lines(run.out);
   ASSERT_EQ(lines.size(), 5u);
@@ -129,13 +129,12 @@ TEST_F(EstimateTest, TooFewMatchesAreAnAnswer) {
   WriteText(Path("in/three.matches"),
             kHeader + std::string("axis 0 1 0\n") +
                 Matches({"0 100 100 0 110 100 0", "1 200 90 1 210 91 0", "0 50 60 0 55 60 0"}));
-  const Run run = RunTool("estimate", {"--matches=" + Path("in"), "--solver=4pt-axis"});
+  const Outcome run = RunTool("estimate", {"--matches=" + Path("in"), "--solver=4pt-axis"});
   EXPECT_EXIT_CODE(run, 0);
   EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("none.matches: 0 matches, 4pt-axis needs 4"),
                                           HasSubstr("three.matches: 3 matches, 4pt-axis needs 4")));
   EXPECT_THAT(run.out, HasSubstr("too few matches"));
-  const Json report =
-      ParseReport(RunTool("estimate", {"--matches=" + Path("in"), "--json=-"}).out);
+  const Json report = ParseReport(RunTool("estimate", {"--matches=" + Path("in"), "--json=-"}).out);
   for (const Json& pair : report["pairs"]) {
     EXPECT_THAT(Keys(pair), UnorderedElementsAre("pair", "status", "message", "matches"));
     EXPECT_EQ(pair["status"], "too few matches");
@@ -159,7 +158,7 @@ TEST_F(EstimateTest, DegenerateMatchesEndInAStatusWithEverySolver) {
   for (size_t k = 0; k < kinds.size(); ++k) {
     WriteText(Path("in/" + std::to_string(k) + ".matches"), kHeader + priors + Matches(kinds[k]));
   }
-  const Run usage = RunTool("estimate", {"--matches=x", "--solver=?"});
+  const Outcome usage = RunTool("estimate", {"--matches=x", "--solver=?"});
   const std::string marker = "expected one of ";
   ASSERT_THAT(usage.err, HasSubstr(marker));
   std::string names = usage.err.substr(usage.err.find(marker) + marker.size());
@@ -168,8 +167,8 @@ TEST_F(EstimateTest, DegenerateMatchesEndInAStatusWithEverySolver) {
     const size_t end = names.find(", ", begin);
     const std::string solver = names.substr(begin, end - begin);
     begin = end + 2;
-    const Run run = RunTool("estimate", {"--matches=" + Path("in"), "--solver=" + solver,
-                                         "--max_iterations=200", "--json=-"});
+    const Outcome run = RunTool("estimate", {"--matches=" + Path("in"), "--solver=" + solver,
+                                             "--max_iterations=200", "--json=-"});
     EXPECT_EXIT_CODE(run, 0);
     const Json report = ParseReport(run.out);
     ASSERT_EQ(report["pairs"].size(), kinds.size());
@@ -184,10 +183,10 @@ TEST_F(EstimateTest, PairWithoutThePriorOfItsSolverFailsWithAMessage) {
   const std::string directory = Simulate("in", {"--pairs=1", "--num_matches=40"});
   for (const auto& [solver, words] : std::vector<std::pair<std::string, std::string>>{
            {"3pt", "no normal"}, {"3pt-approx", "no normal"}}) {
-    const Run run = RunTool("estimate", {"--matches=" + directory, "--solver=" + solver});
+    const Outcome run = RunTool("estimate", {"--matches=" + directory, "--solver=" + solver});
     EXPECT_EXIT_CODE(run, 0);
-    EXPECT_THAT(Lines(run.err),
-                ElementsAre(AllOf(HasSubstr("000000.matches: "), HasSubstr(solver), HasSubstr(words))));
+    EXPECT_THAT(Lines(run.err), ElementsAre(AllOf(HasSubstr("000000.matches: "), HasSubstr(solver),
+                                                  HasSubstr(words))));
     EXPECT_THAT(run.out, HasSubstr("invalid input"));
   }
   // The body's axes stand in.
@@ -196,7 +195,7 @@ TEST_F(EstimateTest, PairWithoutThePriorOfItsSolverFailsWithAMessage) {
 
 TEST_F(EstimateTest, PriorFromTheTruthNeedsTheTruth) {
   WriteText(Path("in/a.matches"), kHeader + std::string("matches 0\n"));
-  const Run run = RunTool("estimate", {"--matches=" + Path("in"), "--prior=truth"});
+  const Outcome run = RunTool("estimate", {"--matches=" + Path("in"), "--prior=truth"});
   EXPECT_EXIT_CODE(run, 1);
   EXPECT_THAT(run.err, HasSubstr("a.matches: no truth"));
 }
@@ -205,7 +204,7 @@ TEST_F(EstimateTest, ResultsDoNotDependOnThreadsAndRuns) {
   const std::string matches =
       Simulate("in", {"--pairs=8", "--inter_share=0.3", "--outlier_share=0.4"});
   const auto estimate = [&](const Args& more) {
-    const Run run = RunTool("estimate", Args{"--matches=" + matches, "--json=-"} + more);
+    const Outcome run = RunTool("estimate", Args{"--matches=" + matches, "--json=-"} + more);
     EXPECT_EXIT_CODE(run, 0);
     return WithoutTimes(ParseReport(run.out));
   };
@@ -217,10 +216,12 @@ TEST_F(EstimateTest, ResultsDoNotDependOnThreadsAndRuns) {
 
 TEST_F(EstimateTest, DashWritesOnlyTheReportToStdout) {
   const std::string matches = Simulate("in", {"--pairs=1", "--num_matches=40"});
-  const Run json = RunTool("estimate", {"--matches=" + matches, "--json=-", "--csv=" + Path("csv")});
+  const Outcome json =
+      RunTool("estimate", {"--matches=" + matches, "--json=-", "--csv=" + Path("csv")});
   EXPECT_THAT(json.out, StartsWith("{"));
   ParseReport(json.out);
-  const Run csv = RunTool("estimate", {"--matches=" + matches, "--json=" + Path("json"), "--csv=-"});
+  const Outcome csv =
+      RunTool("estimate", {"--matches=" + matches, "--json=" + Path("json"), "--csv=-"});
   EXPECT_THAT(csv.out, StartsWith("pair,"));
   EXPECT_THAT(Lines(csv.out), SizeIs(2));
   EXPECT_EQ(Lines(ReadText(Path("csv"))).size(), 2u);
@@ -233,13 +234,14 @@ TEST_F(EstimateTest, TableFitsIntoAHundredColumns) {
       Simulate("in", {"--pairs=2", "--rotation_deg=12", "--inter_share=1", "--num_matches=3000"});
   WriteText(matches + "/a_very_long_name_of_a_sequence_000000_000001.matches",
             kHeader + std::string("axis 0 1 0\nmatches 0\n"));
-  WriteText(matches + "/\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc"
-                      "\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6.matches",
+  WriteText(matches +
+                "/\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc"
+                "\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6.matches",
             kHeader + std::string("axis 0 1 0\nmatches 0\n"));
   // Outliers only: whatever numbers come of them.
   const std::string noise = Simulate(
       "noise", {"--pairs=5", "--num_matches=30", "--outlier_share=1", "--inter_share=0.5"});
-  const Run run = RunTool("estimate", {"--matches=" + matches + "," + noise});
+  const Outcome run = RunTool("estimate", {"--matches=" + matches + "," + noise});
   EXPECT_EXIT_CODE(run, 0);
   EXPECT_LE(Width(run.out), 100u) << run.out;
   EXPECT_THAT(run.out, HasSubstr("...00000_000001")) << run.out;
@@ -247,8 +249,8 @@ TEST_F(EstimateTest, TableFitsIntoAHundredColumns) {
 
 TEST_F(EstimateTest, OptionsChangeTheResult) {
   // Large noise and gravity off by 2 degrees, so that every option shows.
-  const std::string matches = Simulate(
-      "in", {"--pairs=1", "--num_matches=60", "--inter_share=0.5", "--outlier_share=0.2"});
+  const std::string matches =
+      Simulate("in", {"--pairs=1", "--num_matches=60", "--inter_share=0.5", "--outlier_share=0.2"});
   const Args base = {"--matches=" + matches, "--solver=4pt"};
   const Json result = OnlyPair(base)["refined"];
   for (const Args& change : std::vector<Args>{{"--refine=prior"},
@@ -271,8 +273,8 @@ TEST_F(EstimateTest, OptionsChangeTheResult) {
 }
 
 TEST_F(EstimateTest, ExactPriorIsKeptExactly) {
-  const std::string matches = Simulate(
-      "in", {"--pairs=1", "--num_matches=60", "--inter_share=0.5", "--motion=planar"});
+  const std::string matches =
+      Simulate("in", {"--pairs=1", "--num_matches=60", "--inter_share=0.5", "--motion=planar"});
   for (const char* form : {"--refine=prior", "--refine=prior-depths"}) {
     const Json axis = OnlyPair({"--matches=" + matches, "--solver=4pt-axis", form})["refined"];
     EXPECT_NEAR(axis["q_wxyz"][1], 0, 1e-12) << form;

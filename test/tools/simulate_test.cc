@@ -40,7 +40,7 @@ class SimulateTest : public ToolsTest {
 };
 
 TEST_F(SimulateTest, DefaultsAreTheSceneOfTheBenchmarks) {
-  const Run run = RunTool("simulate", {"--output=" + Path("out")});
+  const Outcome run = RunTool("simulate", {"--output=" + Path("out")});
   ASSERT_EXIT_CODE(run, 0);
   EXPECT_THAT(run.out, IsEmpty());
   EXPECT_THAT(run.err, HasSubstr("wrote 50 match files"));
@@ -63,8 +63,9 @@ TEST_F(SimulateTest, DefaultsAreTheSceneOfTheBenchmarks) {
 }
 
 TEST_F(SimulateTest, SameSeedSameBytes) {
-  const Args args = {"--pairs=3", "--num_matches=50", "--motion=random", "--rotation_axis=random",
-                     "--inter_share=0.5", "--outlier_share=0.2", "--seed=7"};
+  const Args args = {
+      "--pairs=3",         "--num_matches=50",    "--motion=random", "--rotation_axis=random",
+      "--inter_share=0.5", "--outlier_share=0.2", "--seed=7"};
   const std::string bytes = Bytes(Simulate("a", args));
   EXPECT_EQ(bytes, Bytes(Simulate("b", args)));
   EXPECT_NE(bytes, Bytes(Simulate("c", args + Args{"--seed=8"})));
@@ -111,8 +112,7 @@ TEST_F(SimulateTest, SharesAreExact) {
 }
 
 TEST_F(SimulateTest, NoMatchesAreAFileToo) {
-  const std::vector<FramePair> pairs =
-      ReadAll(Simulate("none", {"--num_matches=0", "--pairs=1"}));
+  const std::vector<FramePair> pairs = ReadAll(Simulate("none", {"--num_matches=0", "--pairs=1"}));
   ASSERT_EQ(pairs.size(), 1u);
   EXPECT_THAT(pairs[0].matches, IsEmpty());
 }
@@ -133,15 +133,15 @@ TEST_F(SimulateTest, WrongValuesAreUsageErrorsAndLeaveNothing) {
       {"--rotation_axis=z", "y or random"},
   };
   for (const auto& [flag, what] : wrong) {
-    const rigel::Run run = RunTool("simulate", {"--output=" + Path("out"), flag});
+    const Outcome run = RunTool("simulate", {"--output=" + Path("out"), flag});
     EXPECT_EXIT_CODE(run, 2);
     EXPECT_THAT(run.err, HasSubstr(what));
   }
-  const Run planar = RunTool(
-      "simulate", {"--output=" + Path("out"), "--motion=planar", "--rotation_axis=random"});
+  const Outcome planar =
+      RunTool("simulate", {"--output=" + Path("out"), "--motion=planar", "--rotation_axis=random"});
   EXPECT_EXIT_CODE(planar, 2);
   EXPECT_THAT(planar.err, HasSubstr("planar"));
-  const Run nowhere = RunTool("simulate", {});
+  const Outcome nowhere = RunTool("simulate", {});
   EXPECT_EXIT_CODE(nowhere, 2);
   EXPECT_THAT(nowhere.err, HasSubstr("--output is missing"));
   EXPECT_FALSE(std::filesystem::exists(Path("out")));
@@ -153,8 +153,9 @@ TEST_F(SimulateTest, DirectoryIsMadeWithItsParents) {
 
 TEST_F(SimulateTest, DirectoryThatCannotBeMadeFails) {
   WriteText(Path("file"), "in the way");
-  for (const std::string& output : {Path("file"), Path("file") + "/below", std::string("/proc/x")}) {
-    const Run run = RunTool("simulate", {"--output=" + output, "--pairs=1"});
+  for (const std::string& output :
+       {Path("file"), Path("file") + "/below", std::string("/proc/x")}) {
+    const Outcome run = RunTool("simulate", {"--output=" + output, "--pairs=1"});
     EXPECT_EXIT_CODE(run, 1);
     EXPECT_THAT(run.err, HasSubstr(output));
     EXPECT_EQ(Lines(run.err).size(), 1u) << run.err;
@@ -163,13 +164,13 @@ TEST_F(SimulateTest, DirectoryThatCannotBeMadeFails) {
 
 TEST_F(SimulateTest, FileThatCannotBeWrittenFails) {
   std::filesystem::create_directories(Path("out/000001.matches/below"));
-  const Run run = RunTool("simulate", {"--output=" + Path("out"), "--pairs=3"});
+  const Outcome run = RunTool("simulate", {"--output=" + Path("out"), "--pairs=3"});
   EXPECT_EXIT_CODE(run, 1);
   EXPECT_THAT(run.err, HasSubstr("000001.matches: cannot be written"));
 }
 
 TEST_F(SimulateTest, MotionOutOfViewFailsWithAMessage) {
-  const Run run =
+  const Outcome run =
       RunTool("simulate", {"--output=" + Path("out"), "--pairs=1", "--rotation_deg=180"});
   EXPECT_EXIT_CODE(run, 1);
   EXPECT_THAT(run.err, HasSubstr("in the view of camera"));

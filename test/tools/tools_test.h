@@ -14,7 +14,7 @@ namespace rigel {
 using Json = nlohmann::json;
 using Args = std::vector<std::string>;
 
-struct Run {
+struct Outcome {
   std::string command;  // for messages
   int exit_code = -1;   // -1 if a signal ended the program
   int signal = 0;       // SIGALRM: it ran for more than five minutes
@@ -25,7 +25,7 @@ struct Run {
 enum class Stdout { kCaptured, kClosed, kFullDevice, kBrokenPipe };
 
 // Runs "rigel_NAME" and waits for it. stdin is empty.
-Run RunTool(const std::string& name, const Args& args, Stdout to = Stdout::kCaptured);
+Outcome RunTool(const std::string& name, const Args& args, Stdout to = Stdout::kCaptured);
 
 std::string ReadText(const std::string& path);
 void WriteText(const std::string& path, const std::string& text);
@@ -62,14 +62,16 @@ class ToolsTest : public testing::Test {
 };
 
 // Each with one readable line of what the program said.
-#define EXPECT_EXIT_CODE(run, code)                                                             \
-  EXPECT_EQ((run).exit_code, code) << (run).command << "\nsignal " << (run).signal << "\nstdout:\n" \
-                                   << (run).out << "\nstderr:\n"                                \
-                                   << (run).err
-#define ASSERT_EXIT_CODE(run, code)                                                             \
-  ASSERT_EQ((run).exit_code, code) << (run).command << "\nsignal " << (run).signal << "\nstdout:\n" \
-                                   << (run).out << "\nstderr:\n"                                \
-                                   << (run).err
+#define EXPECT_EXIT_CODE(run, code)                                    \
+  EXPECT_EQ((run).exit_code, code)                                     \
+      << (run).command << "\nsignal " << (run).signal << "\nstdout:\n" \
+      << (run).out << "\nstderr:\n"                                    \
+      << (run).err
+#define ASSERT_EXIT_CODE(run, code)                                    \
+  ASSERT_EQ((run).exit_code, code)                                     \
+      << (run).command << "\nsignal " << (run).signal << "\nstdout:\n" \
+      << (run).out << "\nstderr:\n"                                    \
+      << (run).err
 
 }  // namespace rigel
 

@@ -24,7 +24,9 @@ void Redirect(const char* path, int flags, int to) {
 
 void ExpectFinite(const Json& json, const std::string& where) {
   EXPECT_FALSE(json.is_null()) << where << " is null";
-  if (json.is_number()) EXPECT_TRUE(std::isfinite(json.get<double>())) << where;
+  if (json.is_number()) {
+    EXPECT_TRUE(std::isfinite(json.get<double>())) << where;
+  }
   if (json.is_object()) {
     for (const auto& [key, value] : json.items()) ExpectFinite(value, where + "/" + key);
   } else if (json.is_array()) {
@@ -34,8 +36,8 @@ void ExpectFinite(const Json& json, const std::string& where) {
 
 }  // namespace
 
-Run RunTool(const std::string& name, const Args& args, Stdout to) {
-  Run run;
+Outcome RunTool(const std::string& name, const Args& args, Stdout to) {
+  Outcome run;
   const std::string program = std::string(RIGEL_PROGRAMS) + "/rigel_" + name;
   run.command = "rigel_" + name;
   for (const std::string& arg : args) run.command += " " + arg;
@@ -148,8 +150,8 @@ std::vector<std::string> Keys(const Json& object) {
 
 Json WithoutTimes(Json report) {
   if (report.is_object()) {
-    for (const char* key : {"time_ms", "mean_us", "median_us", "spread_us", "ratio", "prepare_us",
-                            "reference_us"}) {
+    for (const char* key :
+         {"time_ms", "mean_us", "median_us", "spread_us", "ratio", "prepare_us", "reference_us"}) {
       report.erase(key);
     }
   }
@@ -170,7 +172,7 @@ void ToolsTest::TearDown() {
 }
 
 std::string ToolsTest::Simulate(const std::string& name, const Args& args) {
-  const Run run = RunTool("simulate", Args{"--output=" + Path(name)} + args);
+  const Outcome run = RunTool("simulate", Args{"--output=" + Path(name)} + args);
   EXPECT_EXIT_CODE(run, 0);
   return Path(name);
 }

@@ -1,0 +1,79 @@
+#include "rigel/problems/opengv_peers.h"
+
+#ifdef RIGEL_WITH_OPENGV
+
+#include <opengv/relative_pose/NoncentralRelativeAdapter.hpp>
+#include <opengv/relative_pose/methods.hpp>
+#endif
+
+namespace rigel {
+
+#ifdef RIGEL_WITH_OPENGV
+namespace {
+
+// OpenGV's data of a sample: every match gets cameras of its own, turned into the body frame.
+struct OpenGvSample {
+  opengv::bearingVectors_t bearings1, bearings2;
+  std::vector<int> cameras1, cameras2;
+  opengv::translations_t offsets;
+  opengv::rotations_t rotations;
+
+  OpenGvSample(const PreparedMatches& matches, const int* sample, int size) {
+    for (int k = 0; k < size; ++k) {
+      const RayPair& rays = matches.rays(sample[k]);
+      bearings1.push_back(rays.ray1.x);
+      bearings2.push_back(rays.ray2.x);
+      cameras1.push_back(2 * k);
+      cameras2.push_back(2 * k + 1);
+      offsets.push_back(rays.ray1.s);
+      offsets.push_back(rays.ray2.s);
+    }
+    rotations.assign(2 * static_cast<size_t>(size), Eigen::Matrix3d::Identity());
+  }
+};
+
+// Its motions are f1_from_f2.
+int SolveOpenGvSixpt(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
+  solutions->clear();
+  const OpenGvSample data(matches, sample, 6);
+  const opengv::relative_pose::NoncentralRelativeAdapter adapter(
+      data.bearings1, data.bearings2, data.cameras1, data.cameras2, data.offsets, data.rotations);
+  for (const Eigen::Matrix3d& R : opengv::relative_pose::sixpt(adapter)) {
+    Solution& solution = solutions->Append();
+    solution.R = R.transpose();
+    solution.t.setZero();
+    solution.has_scale = false;
+  }
+  return solutions->size();
+}
+
+int SolveOpenGvSeventeenpt(const PreparedMatches& matches, const int* sample,
+                           Solutions* solutions) {
+  solutions->clear();
+  const OpenGvSample data(matches, sample, 17);
+  const opengv::relative_pose::NoncentralRelativeAdapter adapter(
+      data.bearings1, data.bearings2, data.cameras1, data.cameras2, data.offsets, data.rotations);
+  const opengv::transformation_t T = opengv::relative_pose::seventeenpt(adapter);
+  Solution& solution = solutions->Append();
+  solution.R = T.leftCols<3>().transpose();
+  solution.t = -solution.R * T.col(3);
+  solution.has_scale = true;
+  return solutions->size();
+}
+
+}  // namespace
+#endif
+
+const std::vector<SolverInfo>& OpenGvPeers() {
+  static const std::vector<SolverInfo> peers = {
+#ifdef RIGEL_WITH_OPENGV
+      {"opengv-sixpt", 6, PriorKind::kNone, 64, true, SampleKind::kSpread, &SolveOpenGvSixpt,
+       "OpenGV (Kneip, Furgale, ICRA 2014)"},
+      {"opengv-seventeenpt", 17, PriorKind::kNone, 1, true, SampleKind::kSpread,
+       &SolveOpenGvSeventeenpt, "OpenGV (Kneip, Furgale, ICRA 2014)"},
+#endif
+  };
+  return peers;
+}
+
+}  // namespace rigel

@@ -1,0 +1,17 @@
+// OpenGV's generalized relative pose solvers behind Rigel's interface, to time both in one run.
+#ifndef RIGEL_PROBLEMS_OPENGV_PEERS_H_
+#define RIGEL_PROBLEMS_OPENGV_PEERS_H_
+
+#include <vector>
+
+#include "rigel/minimal/catalogue.h"
+
+namespace rigel {
+
+// opengv-sixpt (rotations only: t is left at zero) and opengv-seventeenpt; none unless Rigel was
+// built with RIGEL_WITH_OPENGV. A call includes the making of OpenGV's adapter.
+const std::vector<SolverInfo>& OpenGvPeers();
+
+}  // namespace rigel
+
+#endif  // RIGEL_PROBLEMS_OPENGV_PEERS_H_

@@ -1,0 +1,261 @@
+#include "rigel/minimal/grouped_matches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "rigel/core/epipolar.h"
+#include "rigel/core/random.h"
+#include "rigel/problems/synthetic.h"
+
+namespace rigel {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kThreshold = 1.5;
+
+// Numbers of matches that fill the kernel's blocks of 32 and that do not; all camera pairs; mixed
+// focal lengths, fx != fy.
+FramePair MakePair(int num_matches, int seed) {
+  SceneOptions options;
+  options.num_cameras = 3;
+  options.num_matches = num_matches;
+  options.inter_share = 0.5;
+  options.outlier_share = 0.3;
+  FramePair pair;
+  std::string error;
+  EXPECT_TRUE(MakeScenePair(options, seed, &pair, &error)) << error;
+  for (int k = 0; k < 3; ++k) {
+    PinholeCamera& camera = pair.rig.cameras[k].intrinsics;
+    const PinholeCamera old = camera;
+    camera = {300.0 + 100 * k, 350.0 + 80 * k, 300.0 + 10 * k, 250.0, 800, 600};
+    // The same rays through the new camera.
+    for (Match& match : pair.matches) {
+      if (match.camera1 == k) match.pixel1 = camera.Project(old.Normalize(match.pixel1));
+      if (match.camera2 == k) match.pixel2 = camera.Project(old.Normalize(match.pixel2));
+    }
+  }
+  return pair;
+}
+
+Pose PoseNear(const Pose& truth, uint64_t seed) {
+  Random random = Random::Stream(3, seed);
+  Pose pose = truth;
+  pose.R = ExpSO3(0.003 * random.NormalVector3()) * pose.R;
+  pose.t += 0.05 * random.NormalVector3();
+  return pose;
+}
+
+// The score's definition, by core's Sampson error, one match at a time.
+double DirectScore(const FramePair& pair, const Pose& pose, int* num_inliers) {
+  double sum = 0.0;
+  *num_inliers = 0;
+  for (const Match& match : pair.matches) {
+    const double r = SampsonError(pose, pair.rig, match);
+    const double r2 = r * r;
+    sum += std::min(r2, kThreshold * kThreshold);
+    *num_inliers += r2 < kThreshold * kThreshold;
+  }
+  return sum;
+}
+
+TEST(GroupedMatches, GroupsByCameraPairAndKeepsTheOrderWithin) {
+  const FramePair pair = MakePair(200, 1);
+  const GroupedMatches grouped(pair.rig, pair.matches);
+  ASSERT_EQ(grouped.size(), 200);
+  std::vector<bool> seen(200, false);
+  for (int k = 0; k < grouped.size(); ++k) {
+    const int original = grouped.original(k);
+    ASSERT_FALSE(seen[original]) << "twice";
+    seen[original] = true;
+    EXPECT_EQ(grouped.matches()[k].pixel1, pair.matches[original].pixel1);
+    EXPECT_EQ(grouped.matches()[k].pixel2, pair.matches[original].pixel2);
+  }
+  EXPECT_GT(grouped.groups().size(), 5u);
+  int next = 0;
+  for (size_t g = 0; g < grouped.groups().size(); ++g) {
+    const MatchGroup& group = grouped.groups()[g];
+    EXPECT_EQ(group.begin, next);
+    next += group.size;
+    for (int k = group.begin; k < next; ++k) {
+      EXPECT_EQ(grouped.matches()[k].camera1, group.camera1);
+      EXPECT_EQ(grouped.matches()[k].camera2, group.camera2);
+      if (k > group.begin) {
+        EXPECT_LT(grouped.original(k - 1), grouped.original(k));
+      }
+    }
+    for (size_t h = 0; h < g; ++h) {
+      EXPECT_FALSE(grouped.groups()[h].camera1 == group.camera1 &&
+                   grouped.groups()[h].camera2 == group.camera2)
+          << "one pair of cameras in two groups";
+    }
+  }
+  EXPECT_EQ(next, grouped.size());
+}
+
+TEST(GroupedMatches, ScoreIsTheSumOfTruncatedSampsonErrors) {
+  for (const int num_matches : {1, 3, 31, 32, 33, 100, 400}) {
+    for (int seed = 0; seed < 20; ++seed) {
+      const FramePair pair = MakePair(num_matches, seed);
+      const GroupedMatches grouped(pair.rig, pair.matches);
+      const Pose pose = PoseNear(*pair.truth, seed);
+      int expected_inliers = 0;
+      const double expected = DirectScore(pair, pose, &expected_inliers);
+      int inliers = -1;
+      EXPECT_NEAR(grouped.Score(pose, kThreshold, kInf, &inliers), expected, 1e-9 * expected);
+      EXPECT_EQ(inliers, expected_inliers);
+      if (num_matches >= 100) {
+        EXPECT_GT(inliers, 0);
+        EXPECT_LT(inliers, num_matches);
+      }
+    }
+  }
+}
+
+TEST(GroupedMatches, ScoreDoesNotDependOnTheOrderOfTheMatches) {
+  FramePair pair = MakePair(300, 2);
+  const Pose pose = PoseNear(*pair.truth, 2);
+  int expected_inliers = 0;
+  const double expected =
+      GroupedMatches(pair.rig, pair.matches).Score(pose, kThreshold, kInf, &expected_inliers);
+  Random random(1);
+  for (int k = 0; k < 10; ++k) {
+    for (int i = 299; i > 0; --i) {
+      std::swap(pair.matches[i], pair.matches[random.Index(i + 1)]);
+    }
+    int inliers = 0;
+    EXPECT_NEAR(
+        GroupedMatches(pair.rig, pair.matches).Score(pose, kThreshold, kInf, &inliers), expected,
+        1e-10 * expected);
+    EXPECT_EQ(inliers, expected_inliers);
+  }
+}
+
+// RANSAC compares score < bound, so: a score below the bound comes back complete and unchanged, any
+// other stops at or above it.
+TEST(GroupedMatches, ABoundNeverRejectsAWinner) {
+  for (int seed = 0; seed < 50; ++seed) {
+    const FramePair pair = MakePair(300, seed);
+    const GroupedMatches grouped(pair.rig, pair.matches);
+    const Pose pose = PoseNear(*pair.truth, seed);
+    int expected_inliers = 0;
+    const double score = grouped.Score(pose, kThreshold, kInf, &expected_inliers);
+    for (const double above : {std::nextafter(score, kInf), score * 1.001, score + 100.0}) {
+      int inliers = 0;
+      EXPECT_EQ(grouped.Score(pose, kThreshold, above, &inliers), score);
+      EXPECT_EQ(inliers, expected_inliers);
+    }
+    for (const double share : {0.0, 0.1, 0.5, 0.9, 0.999999}) {
+      int inliers = 0;
+      const double stopped = grouped.Score(pose, kThreshold, share * score, &inliers);
+      EXPECT_GT(stopped, share * score);
+      EXPECT_LE(stopped, score * (1 + 1e-12));
+      EXPECT_LE(inliers, expected_inliers);
+    }
+    int inliers = 0;
+    EXPECT_GE(grouped.Score(pose, kThreshold, score, &inliers), score);
+  }
+}
+
+TEST(GroupedMatches, ALowBoundStopsEarly) {
+  // Else the bound would be of no use: of a wrong motion hardly any match is looked at.
+  const FramePair pair = MakePair(400, 3);
+  const GroupedMatches grouped(pair.rig, pair.matches);
+  Pose wrong = *pair.truth;
+  wrong.R = ExpSO3(Eigen::Vector3d(0.5, 0.5, 0.5)) * wrong.R;
+  int inliers = 0;
+  const double full = grouped.Score(wrong, kThreshold, kInf, &inliers);
+  EXPECT_LT(grouped.Score(wrong, kThreshold, 0.1 * full, &inliers), 0.4 * full);
+}
+
+TEST(GroupedMatches, SquaredErrorsAreThoseOfCoreInGroupedOrder) {
+  for (int seed = 0; seed < 20; ++seed) {
+    const FramePair pair = MakePair(150, seed);
+    const GroupedMatches grouped(pair.rig, pair.matches);
+    const Pose pose = PoseNear(*pair.truth, seed);
+    std::vector<double> errors(3, -1.0);
+    grouped.SquaredErrors(pose, &errors);
+    ASSERT_EQ(errors.size(), 150u);
+    for (int k = 0; k < 150; ++k) {
+      const double r = SampsonError(pose, pair.rig, pair.matches[grouped.original(k)]);
+      EXPECT_NEAR(errors[k], r * r, 1e-9 * r * r + 1e-18);
+    }
+  }
+}
+
+TEST(GroupedMatches, FundamentalMatrixOfAGroup) {
+  const FramePair pair = MakePair(60, 4);
+  const GroupedMatches grouped(pair.rig, pair.matches);
+  for (const MatchGroup& group : grouped.groups()) {
+    const Eigen::Matrix3d F = grouped.Fundamental(group, *pair.truth);
+    const PixelArrays pixels = grouped.Pixels(group);
+    ASSERT_EQ(pixels.size, group.size);
+    for (int k = 0; k < group.size; ++k) {
+      const Eigen::Vector3d p1(pixels.x1[k], pixels.y1[k], 1.0);
+      const Eigen::Vector3d p2(pixels.x2[k], pixels.y2[k], 1.0);
+      const double r = SampsonError(*pair.truth, pair.rig, grouped.matches()[group.begin + k]);
+      EXPECT_NEAR(SampsonError(F, p1, p2), r, 1e-9 * (1 + std::abs(r)));
+    }
+  }
+}
+
+TEST(GroupedMatches, ZeroMotionOfOneCameraWinsNoMatch) {
+  // E = 0 fits every intra-camera match.
+  FramePair pair = MakePair(100, 5);
+  for (Match& match : pair.matches) match.camera2 = match.camera1;
+  const GroupedMatches grouped(pair.rig, pair.matches);
+  int inliers = -1;
+  EXPECT_DOUBLE_EQ(grouped.Score(Pose(), kThreshold, kInf, &inliers),
+                   100 * kThreshold * kThreshold);
+  EXPECT_EQ(inliers, 0);
+  std::vector<double> errors;
+  grouped.SquaredErrors(Pose(), &errors);
+  for (const double error : errors) EXPECT_EQ(error, kInf);
+}
+
+TEST(GroupedMatches, AMotionThatIsNotFiniteWinsNoMatch) {
+  const FramePair pair = MakePair(100, 6);
+  const GroupedMatches grouped(pair.rig, pair.matches);
+  for (const double bad : {kNan, kInf}) {
+    Pose pose = *pair.truth;
+    pose.t.x() = bad;
+    int inliers = -1;
+    EXPECT_DOUBLE_EQ(grouped.Score(pose, kThreshold, kInf, &inliers),
+                     100 * kThreshold * kThreshold);
+    EXPECT_EQ(inliers, 0);
+    std::vector<double> errors;
+    grouped.SquaredErrors(pose, &errors);
+    for (const double error : errors) EXPECT_FALSE(error < 1e300);
+  }
+}
+
+TEST(GroupedMatches, NoMatches) {
+  const FramePair pair = MakePair(0, 7);
+  const GroupedMatches grouped(pair.rig, pair.matches);
+  int inliers = -1;
+  EXPECT_EQ(grouped.Score(*pair.truth, kThreshold, kInf, &inliers), 0.0);
+  EXPECT_EQ(inliers, 0);
+  EXPECT_EQ(grouped.size(), 0);
+  EXPECT_TRUE(grouped.groups().empty());
+}
+
+TEST(ScoreKernel, InliersAreAddedToTheCount) {
+  const FramePair pair = MakePair(100, 8);
+  const GroupedMatches grouped(pair.rig, pair.matches);
+  const MatchGroup& group = grouped.groups()[0];
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = grouped.Fundamental(group, *pair.truth);
+  int once = 0;
+  TruncatedSampsonSum(grouped.Pixels(group), F.data(), 2.25, kInf, &once);
+  ASSERT_GT(once, 0);
+  int twice = 7;
+  TruncatedSampsonSum(grouped.Pixels(group), F.data(), 2.25, kInf, &twice);
+  EXPECT_EQ(twice, once + 7);
+}
+
+}  // namespace
+}  // namespace rigel
