@@ -13,9 +13,9 @@
 DEFINE_string(output, "",
               "directory that gets the match files 000000.matches, ...; made if missing");
 DEFINE_int32(pairs, 50, "number of frame pairs");
-DEFINE_int32(num_matches, 200, "matches a pair");
+DEFINE_int32(num_matches, 200, "number of matches of each pair");
 DEFINE_double(noise_px, 0.5, "1-sigma image noise on each coordinate of both views");
-DEFINE_double(rotation_deg, 1, "rotation angle");
+DEFINE_double(rotation_deg, 1, "rotation angle of each pair");
 DEFINE_string(rotation_axis, "y", "rotation axis: y (body Y) or random");
 DEFINE_string(motion, "forward",
               "direction of translation: forward, random, sideways or planar; |t| is 1 m");

@@ -89,6 +89,8 @@ void ParseFlags(const std::string& usage, int* argc, char*** argv) {
   google::InitGoogleLogging((*argv)[0]);
   gflags::SetUsageMessage(usage);
   gflags::SetVersionString(RIGEL_VERSION);
+  // The name of the program, which --version prints before the flags are parsed.
+  gflags::SetArgv(*argc, const_cast<const char**>(*argv));
   google::gflags_exitfunc = &ExitUsage;
   for (int k = 1; k < *argc; ++k) {
     const std::string argument = (*argv)[k];

@@ -196,8 +196,8 @@ TEST(Epipolar, CentredFundamentalActsOnCentredPixels) {
     const Problem p = MakeProblem(seed);
     const RigCamera& ci = p.rig.cameras[p.match.camera1];
     const RigCamera& cj = p.rig.cameras[p.match.camera2];
-    const Matrix3d F = CentredFundamental(EssentialMatrix(p.pose, ci, cj), ci.intrinsics,
-                                          cj.intrinsics);
+    const Matrix3d F =
+        CentredFundamental(EssentialMatrix(p.pose, ci, cj), ci.intrinsics, cj.intrinsics);
     EXPECT_NEAR(CentredPixel(cj.intrinsics, p.match.pixel2)
                     .dot(F * CentredPixel(ci.intrinsics, p.match.pixel1)),
                 PixelConstraint(p, Pixels(p.match)), 1e-13);
@@ -230,8 +230,8 @@ TEST(Sampson, IsTheDistanceFromTheNearestExactMatchToFirstOrder) {
       }
       const double distance = MinimalDistance(p);
       if (distance < 0.1 * sigma) continue;
-      worst = std::max(
-          worst, std::abs(std::abs(SampsonError(p.pose, p.rig, p.match)) / distance - 1.0));
+      worst = std::max(worst,
+                       std::abs(std::abs(SampsonError(p.pose, p.rig, p.match)) / distance - 1.0));
     }
     EXPECT_LT(worst, 0.1 * sigma) << sigma;
   }

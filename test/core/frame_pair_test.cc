@@ -48,8 +48,8 @@ TEST(FramePair, RejectsAMatchOfAnUnknownCamera) {
 }
 
 TEST(FramePair, RejectsAPixelThatIsNotFinite) {
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
-                           -std::numeric_limits<double>::infinity()}) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
     for (int k = 0; k < 4; ++k) {
       FramePair pair = MakePair();
       (k < 2 ? pair.matches[1].pixel1 : pair.matches[1].pixel2)[k % 2] = bad;

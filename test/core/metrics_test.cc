@@ -33,8 +33,7 @@ TEST(Metrics, DirectionErrorIsExactFromZeroToPi) {
     for (int seed = 0; seed < 20; ++seed) {
       Random random = Random::Stream(2, seed);
       const Vector3d t_gt = 3.0 * random.UnitVector3();
-      const Vector3d t =
-          0.2 * (ExpSO3(angle * TangentBasis(t_gt.normalized()).col(0)) * t_gt);
+      const Vector3d t = 0.2 * (ExpSO3(angle * TangentBasis(t_gt.normalized()).col(0)) * t_gt);
       EXPECT_NEAR(TranslationDirectionError(t_gt, t), angle, 3e-15) << seed;
     }
   }

@@ -133,8 +133,7 @@ TEST(Pose, LeftJacobianIsContinuousWhereItSwitchesToTheSeries) {
   // The integral of Exp(s w) over s in [0, 1] is the definition; here by Simpson's rule.
   for (const double angle : {0.5e-3, 2e-3}) {
     const Vector3d w = angle * axis;
-    const Matrix3d simpson =
-        (Matrix3d::Identity() + 4.0 * ExpSO3(0.5 * w) + ExpSO3(w)) / 6.0;
+    const Matrix3d simpson = (Matrix3d::Identity() + 4.0 * ExpSO3(0.5 * w) + ExpSO3(w)) / 6.0;
     EXPECT_LT((LeftJacobianSO3(w) - simpson).norm(), 1e-14) << angle;
   }
 }
@@ -180,8 +179,8 @@ TEST(Pose, QuaternionRoundTripHasPositiveW) {
 TEST(Pose, AllFiniteSeesEveryEntry) {
   EXPECT_TRUE(Pose().AllFinite());
   for (int k = 0; k < 12; ++k) {
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
-                             std::numeric_limits<double>::infinity()}) {
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
       Pose pose;
       (k < 9 ? pose.R(k % 3, k / 3) : pose.t[k - 9]) = bad;
       EXPECT_FALSE(pose.AllFinite()) << k;

@@ -51,7 +51,8 @@ TEST(Rays, MakeRayPairPassesThroughThePointInBothFrames) {
       camera.s = random.NormalVector3();
       rig.cameras.push_back(camera);
     }
-    // Points of the two cameras' frames: the match's first ray is camera 2's, the second camera 0's.
+    // Points of the two cameras' frames: the match's first ray is camera 2's, the second camera
+    // 0's.
     const Vector3d point1 = {random.Normal(), random.Normal(), random.Uniform(1.0, 20.0)};
     const Vector3d point2 = {random.Normal(), random.Normal(), random.Uniform(1.0, 20.0)};
     Match match;

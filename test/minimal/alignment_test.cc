@@ -194,7 +194,7 @@ TEST(Alignment, SaysWhichPartOfThePriorIsMissingOrBad) {
   const double inf = std::numeric_limits<double>::infinity();
   for (const Case& c : cases) {
     const std::optional<Vector3d> bad_values[] = {
-        std::nullopt,           Vector3d(0, 0, 0),   Vector3d(0, 1.002, 0), Vector3d(0, 0.998, 0),
+        std::nullopt,          Vector3d(0, 0, 0),   Vector3d(0, 1.002, 0), Vector3d(0, 0.998, 0),
         Vector3d(0, 1.0, nan), Vector3d(inf, 1, 0), Vector3d(1, 1, 1)};
     for (const std::optional<Vector3d>& bad : bad_values) {
       MotionPrior prior = MakePrior(1);

@@ -1,4 +1,5 @@
-// The promise of the hot path: solvers, sampling, scoring and the RANSAC loop do not touch the heap.
+// The promise of the hot path: solvers, sampling, scoring and the RANSAC loop do not touch the
+// heap.
 //
 // This file replaces the program's allocation functions by counting ones; no other file of the
 // program may. operator new sees the standard containers; Eigen's dynamic matrices call malloc,
@@ -10,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
 #include <gtest/gtest.h>
+#include <Eigen/Core>
 
 #include "rigel/minimal/catalogue.h"
 #include "rigel/minimal/grouped_matches.h"
@@ -247,7 +248,8 @@ TEST(Allocation, RansacLoopMakesNone) {
   ASSERT_NE(info, nullptr);
   const FramePair pair = MakePair(info, true, 200);
   const GroupedMatches grouped(pair.rig, pair.matches);
-  const PreparedMatches matches(pair.rig, grouped.matches(), Prepare(pair, info->prior).alignment());
+  const PreparedMatches matches(pair.rig, grouped.matches(),
+                                Prepare(pair, info->prior).alignment());
   const Sampler sampler(grouped.groups(), grouped.size());
   const RigSolver solver = {info, &grouped, &matches, &sampler};
   RigSolver::Solutions solutions;

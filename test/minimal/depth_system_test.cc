@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include "rigel/core/angles.h"
 #include "rigel/core/epipolar.h"
@@ -241,8 +241,7 @@ TEST(DepthSystem, TheTruthIsARootAndSolvesToTheMotion) {
 }
 
 TEST(DepthSystem, AddsNothingForARootThatIsNotFinite) {
-  const PreparedMatches matches =
-      Prepare(MakePair(1, Cameras::kInter), PriorKind::kAxis);
+  const PreparedMatches matches = Prepare(MakePair(1, Cameras::kInter), PriorKind::kAxis);
   DepthSystem<RotationModel::kExact> system;
   system.SetFourPoint(matches, kSample);
   Solutions solutions;

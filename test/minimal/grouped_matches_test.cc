@@ -129,9 +129,8 @@ TEST(GroupedMatches, ScoreDoesNotDependOnTheOrderOfTheMatches) {
       std::swap(pair.matches[i], pair.matches[random.Index(i + 1)]);
     }
     int inliers = 0;
-    EXPECT_NEAR(
-        GroupedMatches(pair.rig, pair.matches).Score(pose, kThreshold, kInf, &inliers), expected,
-        1e-10 * expected);
+    EXPECT_NEAR(GroupedMatches(pair.rig, pair.matches).Score(pose, kThreshold, kInf, &inliers),
+                expected, 1e-10 * expected);
     EXPECT_EQ(inliers, expected_inliers);
   }
 }

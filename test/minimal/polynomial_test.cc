@@ -206,9 +206,12 @@ TEST(Polynomial, FindsTinyRootsBesideHugeOnes) {
       EXPECT_GT(num_known, 1000 * (degree / (pairs ? 4 : 2)));
     }
   }
-  for (const std::vector<double>& roots :
-       {std::vector<double>{1e-6, 1e6}, {1e-10, -3.0, 1e3}, {-1e-3, 2e-3, 1e4}, {1e-12, 1.0, 2.0},
-        {1e-9, 2e-3, -1.0, 1e5}, {1e-6, -1e-3, 2.0, 3e3}}) {
+  for (const std::vector<double>& roots : {std::vector<double>{1e-6, 1e6},
+                                           {1e-10, -3.0, 1e3},
+                                           {-1e-3, 2e-3, 1e4},
+                                           {1e-12, 1.0, 2.0},
+                                           {1e-9, 2e-3, -1.0, 1e5},
+                                           {1e-6, -1e-3, 2.0, 3e3}}) {
     const std::vector<double> found = SolveAny(FromRoots(roots));
     EXPECT_EQ(found.size(), roots.size());
     for (const double x : roots) EXPECT_LT(Nearest(found, x), 1e-10 * std::abs(x)) << x;
@@ -274,9 +277,13 @@ TEST(Polynomial, FindsRootsOnTheBordersOfTheHalving) {
 TEST(Polynomial, FindsDoubleRoots) {
   // All exact in double precision, so that the roots are double indeed; rounding would make a pair
   // of simple or of complex ones.
-  for (const std::vector<double>& roots :
-       {std::vector<double>{3, 3}, {-0.5, -0.5, 2}, {1, 1, 1}, {0.5, 0.5, 2, 3}, {-2, -2, 1, 5},
-        {0.25, 0.25, 0.75, -3, 2}, {-2, -2, 3, 5, 0.5, 7}}) {
+  for (const std::vector<double>& roots : {std::vector<double>{3, 3},
+                                           {-0.5, -0.5, 2},
+                                           {1, 1, 1},
+                                           {0.5, 0.5, 2, 3},
+                                           {-2, -2, 1, 5},
+                                           {0.25, 0.25, 0.75, -3, 2},
+                                           {-2, -2, 3, 5, 0.5, 7}}) {
     const std::vector<double> found = SolveAny(FromRoots(roots));
     for (const double x : roots) EXPECT_LT(Nearest(found, x), 1e-6) << x;
     for (const double x : found) EXPECT_LT(Nearest(roots, x), 1e-4) << "invented";

@@ -66,8 +66,7 @@ TEST(PreparedMatches, TableGivesTheConstraintAtAnyAngle) {
       const double c = std::cos(angle);
       const double s = std::sin(angle);
       const Matrix3d R = RotationY(angle);
-      const Vector3d n(m.X0 + c * m.Xc + s * m.Xs, c * m.Yc + s * m.Ys,
-                       m.Z0 + c * m.Xs - s * m.Xc);
+      const Vector3d n(m.X0 + c * m.Xc + s * m.Xs, c * m.Yc + s * m.Ys, m.Z0 + c * m.Xs - s * m.Xc);
       EXPECT_LT((n - (R * p).cross(r)).norm(), 1e-14);
       const Vector3d Rtn(m.Xc + c * m.X0 - s * m.Z0, c * m.Yc + s * m.Ys,
                          m.Xs + c * m.Z0 + s * m.X0);

@@ -27,10 +27,14 @@ const char* const kFirstOrder[] = {"4pt-approx", "4pt-axis-approx", "3pt-approx"
 const char* const kPolished[] = {"4pt-approx-polished", "4pt-axis-approx-polished",
                                  "3pt-approx-polished"};
 const char* const kExact[] = {"4pt", "4pt-axis", "3pt"};
-const char* const kFamily[] = {"4pt-approx",          "4pt-axis-approx",
-                               "3pt-approx",          "4pt-approx-polished",
-                               "4pt-axis-approx-polished", "3pt-approx-polished",
-                               "4pt",                 "4pt-axis",
+const char* const kFamily[] = {"4pt-approx",
+                               "4pt-axis-approx",
+                               "3pt-approx",
+                               "4pt-approx-polished",
+                               "4pt-axis-approx-polished",
+                               "3pt-approx-polished",
+                               "4pt",
+                               "4pt-axis",
                                "3pt"};
 
 const SolverInfo& Find(const char* name) {
@@ -279,8 +283,7 @@ TEST(AllSolvers, EverySolutionKeepsThePrior) {
         if (solver.prior == PriorKind::kVertical) {
           EXPECT_LT((solution.R * *prior.gravity1 - *prior.gravity2).norm(), 1e-12) << name;
         } else {
-          const Eigen::Vector3d n =
-              solver.prior == PriorKind::kAxis ? *prior.axis : *prior.normal;
+          const Eigen::Vector3d n = solver.prior == PriorKind::kAxis ? *prior.axis : *prior.normal;
           EXPECT_LT((solution.R * n - n).norm(), 1e-12) << name;
         }
       }
@@ -308,9 +311,9 @@ TEST(AllSolvers, SingleCameraGivesTheDirectionOfItsBaselineAndNoScale) {
         EXPECT_NEAR(baseline(solution).norm(), 1.0, 1e-9) << name;
         const double rotation = RotationError(pair.truth->R, solution.R);
         rotation_error = std::min(rotation_error, rotation);
-        found_it = found_it || (rotation < 1e-6 && TranslationDirectionError(baseline(*pair.truth),
-                                                                             baseline(solution)) <
-                                                       1e-4);
+        found_it = found_it ||
+                   (rotation < 1e-6 &&
+                    TranslationDirectionError(baseline(*pair.truth), baseline(solution)) < 1e-4);
       }
       found += found_it;
       rotation_errors.push_back(rotation_error);
@@ -382,8 +385,7 @@ TEST(AllSolvers, NoMotionGivesNoMotionOrNothing) {
       pair.prior.gravity2 = pair.prior.gravity1;
       for (const Solution& solution : Solve(solver, pair)) {
         // Nothing is known of t; a scale would be made up.
-        EXPECT_FALSE(solution.AllFinite() && solution.has_scale &&
-                     LogSO3(solution.R).norm() > 1e-6)
+        EXPECT_FALSE(solution.AllFinite() && solution.has_scale && LogSO3(solution.R).norm() > 1e-6)
             << name << " seed " << seed;
       }
     }

@@ -31,7 +31,7 @@ std::string ReadText(const std::string& path);
 void WriteText(const std::string& path, const std::string& text);
 std::vector<std::string> Lines(const std::string& text);
 
-// The columns of the longest line, counted in bytes: the programs write ASCII.
+// The columns of the longest line, counted in UTF-8 characters.
 size_t Width(const std::string& text);
 
 // `args`, then `more`.

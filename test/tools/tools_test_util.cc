@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
@@ -122,7 +123,11 @@ std::vector<std::string> Lines(const std::string& text) {
 
 size_t Width(const std::string& text) {
   size_t width = 0;
-  for (const std::string& line : Lines(text)) width = std::max(width, line.size());
+  for (const std::string& line : Lines(text)) {
+    const auto characters =
+        std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xc0) != 0x80; });
+    width = std::max(width, static_cast<size_t>(characters));
+  }
   return width;
 }
 

@@ -1,0 +1,136 @@
+// Google Benchmark of the hot kernels: each minimal solver, scoring, residuals, local optimization.
+//
+//   build/release/bin/kernels_benchmark --benchmark_repetitions=9
+//   --benchmark_report_aggregates_only
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "rigel/minimal/catalogue.h"
+#include "rigel/minimal/grouped_matches.h"
+#include "rigel/problems/synthetic.h"
+#include "rigel/refine/epipolar_residuals.h"
+#include "rigel/refine/refine.h"
+#include "rigel/refine/small_engine.h"
+
+namespace rigel {
+namespace {
+
+FramePair ScenePair(int num_matches, double inter_share, double noise_px, MotionPattern motion,
+                    int index = 0) {
+  SceneOptions options;
+  options.num_matches = num_matches;
+  options.inter_share = inter_share;
+  options.noise_px = noise_px;
+  options.motion = motion;
+  FramePair pair;
+  std::string error;
+  if (!MakeScenePair(options, index, &pair, &error)) std::abort();
+  return pair;
+}
+
+void BM_Solver(benchmark::State& state, const SolverInfo* solver, double inter_share) {
+  // Enough samples that the branch predictor cannot learn them.
+  constexpr int kSamples = 256;
+  const MotionPattern motion =
+      solver->prior == PriorKind::kPlanar ? MotionPattern::kPlanar : MotionPattern::kRandom;
+  std::vector<PreparedMatches> matches;
+  std::vector<std::vector<int>> samples;
+  for (int k = 0; k < kSamples; ++k) {
+    const FramePair pair = ScenePair(4 * solver->sample_size, inter_share, 0.0, motion, k);
+    Alignment alignment;
+    std::string error;
+    if (!MakeAlignment(pair.prior, solver->prior, &alignment, &error)) std::abort();
+    const GroupedMatches grouped(pair.rig, pair.matches);
+    const Sampler sampler(grouped.groups(), solver->sampling, solver->sample_size);
+    std::vector<int> sample(solver->sample_size);
+    Random random(k);
+    if (!sampler.Draw(&random, sample.data())) continue;
+    matches.emplace_back(pair.rig, grouped.matches(), alignment);
+    samples.push_back(sample);
+  }
+  if (matches.empty()) {
+    state.SkipWithError("takes no such samples");
+    return;
+  }
+  Solutions solutions;
+  size_t k = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(solver->solve(matches[k], samples[k].data(), &solutions));
+    if (++k == matches.size()) k = 0;
+  }
+}
+
+void BM_Score(benchmark::State& state) {
+  const FramePair pair =
+      ScenePair(static_cast<int>(state.range(0)), 0.5, 0.5, MotionPattern::kRandom);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  int inliers = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(matches.Score(*pair.truth, 1.5, 1e300, &inliers));
+  }
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(BM_Score)->Arg(626)->Arg(2500);
+
+void BM_SampsonJacobian(benchmark::State& state) {
+  const FramePair pair = ScenePair(600, 0.5, 0.5, MotionPattern::kRandom);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
+  const MotionBasis basis = FullBasis(*pair.truth, true);
+  std::vector<GroupLinearization> groups;
+  double row[6];
+  for (auto _ : state) {
+    residuals.Linearize(*pair.truth, &basis, &groups);
+    for (int k = 0; k < residuals.size(); ++k) {
+      benchmark::DoNotOptimize(residuals.Evaluate(groups, k, 6, row));
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * 600);
+}
+BENCHMARK(BM_SampsonJacobian);
+
+void BM_SmallEngine(benchmark::State& state) {
+  const FramePair pair = ScenePair(600, 0.5, 0.5, MotionPattern::kRandom);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
+  const std::vector<char> mask(600, 1);
+  SmallEngine engine(residuals);
+  for (auto _ : state) {
+    Pose pose = *pair.truth;
+    pose.R = ExpSO3({0.01, -0.01, 0.01}) * pose.R;
+    SmallEngineOptions options;
+    options.loss = LossKind::kCauchy;
+    benchmark::DoNotOptimize(engine.Minimize(options, mask, &pose));
+  }
+}
+BENCHMARK(BM_SmallEngine)->Unit(benchmark::kMicrosecond);
+
+void BM_Refine(benchmark::State& state) {
+  const FramePair pair = ScenePair(600, 0.5, 0.5, MotionPattern::kRandom);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  for (auto _ : state) {
+    Pose pose = *pair.truth;
+    pose.R = ExpSO3({0.001, -0.001, 0.001}) * pose.R;
+    benchmark::DoNotOptimize(Refine(RefineOptions(), matches, pair.prior, &pose).num_inliers);
+  }
+}
+BENCHMARK(BM_Refine)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace rigel
+
+int main(int argc, char** argv) {
+  for (const rigel::SolverInfo& solver : rigel::SolverCatalogue()) {
+    const std::string name = std::string("BM_Solver/") + solver.name;
+    benchmark::RegisterBenchmark((name + "/intra").c_str(), rigel::BM_Solver, &solver, 0.0);
+    if (solver.sampling != rigel::SampleKind::kOneCamera) {
+      benchmark::RegisterBenchmark((name + "/inter").c_str(), rigel::BM_Solver, &solver, 1.0);
+    }
+  }
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
