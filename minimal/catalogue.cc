@@ -6,6 +6,9 @@
 #include "rigel/minimal/four_point_lee.h"
 #include "rigel/minimal/four_point_liu.h"
 #include "rigel/minimal/four_point_sweeney.h"
+#include "rigel/minimal/seventeen_point_li.h"
+#include "rigel/minimal/six_point_stewenius.h"
+#include "rigel/minimal/six_point_ventura.h"
 #include "rigel/minimal/three_point.h"
 #include "rigel/minimal/three_point_approx.h"
 #include "rigel/minimal/two_point_ackermann.h"
@@ -39,6 +42,12 @@ const std::vector<SolverInfo>& SolverCatalogue() {
        "Liu, Li, Dai, Pan, 2017: first order, 4th degree polynomial"},
       {"4pt-sweeney", 4, PriorKind::kAxis, 6, true, SampleKind::kSpread, &Solve4ptSweeney,
        "Sweeney, Flynn, Turk, 3DV 2014: quadratic eigenvalue problem"},
+      {"17pt-li", 17, PriorKind::kNone, 2, true, SampleKind::kSpread, &Solve17ptLi,
+       "Li, Hartley, Kim, CVPR 2008: linear, for locally central rigs too"},
+      {"6pt-stewenius", 6, PriorKind::kNone, 64, true, SampleKind::kSpread, &Solve6ptStewenius,
+       "Stewenius, Nister, Oskarsson, Astrom, OMNIVIS 2005: minimal, up to 64 solutions"},
+      {"6pt-ventura", 6, PriorKind::kNone, 20, false, SampleKind::kSpread, &Solve6ptVentura,
+       "Ventura, Arth, Lepetit, ICCV 2015: first order, up to 20 solutions"},
       {"5pt+1", 6, PriorKind::kNone, 10, true, SampleKind::kOnePairPlusOne, &Solve5ptPlusOne,
        "Nister, PAMI 2004: five points of one camera pair, one more for the scale"},
       {"2pt-choi", 2, PriorKind::kPlanar, 2, true, SampleKind::kOneCamera, &Solve2ptChoi,

@@ -8,7 +8,7 @@
 // from numbers.
 //
 // The real eigenvalues come from the characteristic polynomial of the Hessenberg form, by
-// Descartes' rule: a third of the time of the QR algorithm, and good for roots near the centre
+// Descartes' rule: less work than the QR algorithm, and accurate for roots near the centre
 // about which it is expanded. So variables should be scaled such that the solutions of interest are
 // below 1.
 //

@@ -4,7 +4,7 @@
 // E = [t]x R and of R (paper eq. b2):
 //   x_j'E x_i + x_j'R q_i + q_j'R x_i = 0   for all matches:   A_E e + A_R r = 0.
 // Source: Li, Hartley, Kim, "A Linear Approach to Motion Estimation Using Generalized Camera
-// Models", CVPR 2008: the constraint is eq. 4, the remedy for ambiguous rigs section 4.
+// Models", CVPR 2008, with its remedy for ambiguous rigs.
 //
 // Ambiguous rigs. The right null space of (A_E A_R) has one dimension for a rig of many centres.
 // With intra-camera matches only (r = I, e = 0) is in it whatever the matches are, and with all

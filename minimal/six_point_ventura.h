@@ -4,7 +4,7 @@
 // b2: n = R x_i x x_j, k = x_j'R q_i + q_j'R x_i). Six of them have a solution where the 6 x 4
 // matrix M(r) has rank 3: its fifteen 4 x 4 minors, quartics in r, vanish. They have 20 common
 // roots. Source: Ventura, Arth, Lepetit, "An Efficient Minimal Solution for Multi-Camera Motion",
-// ICCV 2015, section 4. There a polynomial of degree 20 in one unknown is expanded; here the
+// ICCV 2015. There a polynomial of degree 20 in one unknown is expanded; here the
 // quartics give all fifteen monomials of degree 4 in terms of the twenty lower ones, which is
 // multiplication by one unknown as a 20 x 20 matrix, whose characteristic polynomial is that
 // polynomial.

@@ -10,9 +10,13 @@ set -euo pipefail
 
 say() { echo "quickstart: $*" >&2; }
 
+usage="usage: quickstart.sh [DIRECTORY OF MATCH FILES]"
+if [[ $# -eq 1 && ( $1 == -h || $1 == --help ) ]]; then
+  echo "$usage"
+  exit 0
+fi
 if [[ $# -gt 1 || ${1-} == -* ]]; then
-  echo "usage: quickstart.sh [DIRECTORY OF MATCH FILES]" >&2
-  [[ $# -eq 1 && ( $1 == -h || $1 == --help ) ]] && exit 0
+  echo "$usage" >&2
   exit 2
 fi
 if [[ $# -eq 1 && ! -d $1 ]]; then
@@ -38,7 +42,7 @@ quietly() {
 
 say "building in $build (the first time takes some minutes)"
 : >"$log"
-quietly cmake -S "$root" --preset release
+quietly cmake -S "$root" --preset release -DRIGEL_BUILD_TOOLS=ON
 quietly cmake --build "$build" --target rigel_simulate rigel_compare
 
 if [[ $# -eq 1 ]]; then

@@ -1,0 +1,271 @@
+// Accuracy regression: median errors of raw and refined motions in a few settings of the scene,
+// against expected.json beside this file.
+//
+//   accuracy_test                 compares; names each deviation
+//   accuracy_test --update        rewrites expected.json (test/accuracy/update.sh builds first)
+//
+// A change that moves a median on purpose comes with the updated file, so that its review shows
+// what became better and what worse. The motions are deterministic, but another compiler or
+// processor rounds differently; then RANSAC may keep another of two hypotheses that score alike in
+// a pair or two, and a median of 60 pairs moves a little. The tolerances of expected.json leave
+// room for that and not for more; they are edited by hand, --update keeps them.
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "rigel/core/angles.h"
+#include "rigel/problems/comparison.h"
+#include "rigel/problems/synthetic.h"
+
+namespace rigel {
+namespace {
+
+using Json = nlohmann::json;  // objects are sorted by key
+
+constexpr int kPairs = 60;
+constexpr int kThreads = 2;
+
+struct Setting {
+  const char* name;
+  MotionPattern motion;
+  double rotation_deg;
+  RotationAxisPattern axis;
+  double inter_share;
+  double prior_noise_deg;
+  const char* solver;
+  RefineForm refine;
+};
+
+constexpr auto kForward = MotionPattern::kForward;
+constexpr auto kRandom = MotionPattern::kRandom;
+constexpr auto kSideways = MotionPattern::kSideways;
+constexpr auto kPlanar = MotionPattern::kPlanar;
+constexpr auto kY = RotationAxisPattern::kY;
+constexpr auto kAny = RotationAxisPattern::kRandom;
+constexpr auto kFull = RefineForm::kFull;
+constexpr auto kPrior = RefineForm::kPrior;
+
+// Named MOTION-ANGLE-MATCHES-SOLVER[-noise][-prior]: half of the matches are inter-camera in "half"
+// settings, the prior is off by half a degree of pitch in "noise" settings, exact in the refinement
+// of "prior" settings. All have 20 percent of outliers.
+const Setting kSettings[] = {
+    {"forward-1deg-intra-4pt_approx", kForward, 1, kY, 0, 0, "4pt-approx", kFull},
+    {"forward-1deg-intra-4pt_approx_polished", kForward, 1, kY, 0, 0, "4pt-approx-polished", kFull},
+    {"forward-1deg-intra-4pt", kForward, 1, kY, 0, 0, "4pt", kFull},
+    {"forward-1deg-intra-4pt-noise", kForward, 1, kY, 0, 0.5, "4pt", kFull},
+    {"forward-1deg-intra-4pt-prior", kForward, 1, kY, 0, 0, "4pt", kPrior},
+    {"forward-1deg-half-4pt_axis", kForward, 1, kY, 0.5, 0, "4pt-axis", kFull},
+    {"forward-1deg-half-4pt_axis-noise", kForward, 1, kY, 0.5, 0.5, "4pt-axis", kFull},
+    {"forward-1deg-half-4pt_axis-prior", kForward, 1, kY, 0.5, 0, "4pt-axis", kPrior},
+    {"forward-1deg-half-4pt_axis-noise-prior", kForward, 1, kY, 0.5, 0.5, "4pt-axis", kPrior},
+    {"forward-10deg-intra-4pt_axis_approx", kForward, 10, kY, 0, 0, "4pt-axis-approx", kFull},
+    {"forward-10deg-intra-4pt_axis_approx_polished", kForward, 10, kY, 0, 0,
+     "4pt-axis-approx-polished", kFull},
+    {"forward-10deg-intra-4pt_axis", kForward, 10, kY, 0, 0, "4pt-axis", kFull},
+    {"sideways-1deg-intra-4pt_axis", kSideways, 1, kY, 0, 0, "4pt-axis", kFull},
+    {"sideways-10deg-half-4pt", kSideways, 10, kY, 0.5, 0, "4pt", kFull},
+    {"random-1deg-half-4pt_approx", kRandom, 1, kAny, 0.5, 0, "4pt-approx", kFull},
+    {"random-10deg-half-4pt", kRandom, 10, kAny, 0.5, 0, "4pt", kFull},
+    {"random-10deg-half-4pt-noise", kRandom, 10, kAny, 0.5, 0.5, "4pt", kFull},
+    {"planar-1deg-intra-3pt_approx", kPlanar, 1, kY, 0, 0, "3pt-approx", kFull},
+    {"planar-1deg-half-3pt", kPlanar, 1, kY, 0.5, 0, "3pt", kFull},
+    {"planar-1deg-half-3pt-prior", kPlanar, 1, kY, 0.5, 0, "3pt", kPrior},
+    {"planar-10deg-intra-3pt_approx_polished", kPlanar, 10, kY, 0, 0, "3pt-approx-polished", kFull},
+    {"planar-10deg-half-3pt-noise", kPlanar, 10, kY, 0.5, 0.5, "3pt", kFull},
+};
+
+// To 4 significant digits, so that the file stays the same when nothing has changed.
+double Rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.4g", value);
+  return std::stod(text);
+}
+
+// Quantity to median, "raw_rotation_deg" and so on, and "failures"; without those that are not
+// observable.
+Json Measure(const Setting& setting) {
+  SceneOptions scene;
+  scene.num_matches = 150;
+  scene.motion = setting.motion;
+  scene.rotation_deg = setting.rotation_deg;
+  scene.rotation_axis = setting.axis;
+  scene.inter_share = setting.inter_share;
+  scene.outlier_share = 0.2;
+  PriorSourceOptions prior;
+  prior.noise = DegToRad(setting.prior_noise_deg);
+  std::vector<FramePair> pairs(kPairs);
+  for (int k = 0; k < kPairs; ++k) {
+    std::string error;
+    EXPECT_TRUE(MakeScenePair(scene, k, &pairs[k], &error) &&
+                ApplyPriorSource(prior, k, &pairs[k], &error))
+        << error;
+  }
+  EstimateOptions options;
+  options.solver = setting.solver;
+  options.refine.form = setting.refine;
+  const SolverSummary summary =
+      Summarize(setting.solver, "all", RunSolver(pairs, options, kThreads, {}));
+  Json medians;
+  medians["failures"] = summary.failures;
+  const auto put = [&](const char* name, const std::optional<Statistics>& s) {
+    if (s) medians[name] = Rounded(s->median);
+  };
+  put("raw_rotation_deg", summary.raw_rotation_deg);
+  put("raw_direction_deg", summary.raw_direction_deg);
+  put("raw_scale", summary.raw_scale);
+  put("refined_rotation_deg", summary.refined_rotation_deg);
+  put("refined_direction_deg", summary.refined_direction_deg);
+  put("refined_scale", summary.refined_scale);
+  return medians;
+}
+
+Json ReadExpected() {
+  std::ifstream file(RIGEL_ACCURACY_DATA);
+  Json expected = Json::parse(file, nullptr, false);
+  EXPECT_TRUE(expected.is_object()) << RIGEL_ACCURACY_DATA << " cannot be read";
+  return expected.is_object() ? expected : Json::object();
+}
+
+std::string Text(const Json& number) { return number.is_null() ? "nothing" : number.dump(); }
+
+// relative * |expected| + absolute.
+double Tolerance(const Json& tolerances, const std::string& quantity, const Json& expected) {
+  const Json entry = tolerances.value(quantity, Json::object());
+  const double value = expected.is_number() ? expected.get<double>() : 0.0;
+  return entry.value("relative", 0.0) * std::abs(value) + entry.value("absolute", 0.0);
+}
+
+class Accuracy : public testing::TestWithParam<Setting> {};
+
+std::string TestName(const Setting& setting) {
+  std::string name = setting.name;
+  for (char& c : name) {
+    if (c == '-') c = '_';
+  }
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scene, Accuracy, testing::ValuesIn(kSettings),
+                         [](const auto& setting) { return TestName(setting.param); });
+
+TEST_P(Accuracy, MediansAreAsExpected) {
+  const std::string name = GetParam().name;
+  const Json file = ReadExpected();
+  const Json tolerances = file.value("tolerances", Json::object());
+  const Json expected = file.value("medians", Json::object()).value(name, Json::object());
+  const Json measured = Measure(GetParam());
+  Json quantities = measured;  // of both
+  quantities.update(expected);
+  for (const auto& [quantity, ignored] : quantities.items()) {
+    const Json want = expected.value(quantity, Json());
+    const Json got = measured.value(quantity, Json());
+    const double tolerance = Tolerance(tolerances, quantity, want);
+    const bool agree = want.is_number() && got.is_number() &&
+                       std::abs(got.get<double>() - want.get<double>()) <= tolerance;
+    EXPECT_TRUE(agree) << name << "/" << quantity << ": expected " << Text(want) << " +- "
+                       << Rounded(tolerance) << ", got " << Text(got)
+                       << "\nif that is meant to be: test/accuracy/update.sh";
+  }
+}
+
+TEST(AccuracyData, HasTheSettingsOfTheTestAndNoOthers) {
+  const Json file = ReadExpected();
+  std::map<std::string, int> names;
+  for (const Setting& setting : kSettings) EXPECT_EQ(++names[setting.name], 1) << setting.name;
+  const Json all = file.value("medians", Json::object());
+  const Json tolerances = file.value("tolerances", Json::object());
+  for (const auto& [name, medians] : all.items()) {
+    EXPECT_EQ(names.count(name), 1u) << name << " is in the file only";
+    for (const auto& [quantity, value] : medians.items()) {
+      EXPECT_TRUE(tolerances.contains(quantity)) << quantity << " has no tolerance";
+    }
+  }
+}
+
+// One line a stage of a setting, so that a diff shows what moved.
+std::string Format(const Json& file) {
+  std::ostringstream text;
+  text << "{\n";
+  text << "  \"about\": " << file["about"].dump() << ",\n";
+  text << "  \"medians\": {\n";
+  const Json& medians = file["medians"];
+  size_t settings = 0;
+  for (const auto& [name, values] : medians.items()) {
+    text << "    " << Json(name).dump() << ": {";
+    std::string stage;
+    size_t quantities = 0;
+    for (const auto& [quantity, value] : values.items()) {
+      const std::string its_stage = quantity.substr(0, quantity.find('_'));
+      text << (its_stage == stage ? " " : "\n      ") << Json(quantity).dump() << ": "
+           << value.dump() << (++quantities < values.size() ? "," : "");
+      stage = its_stage;
+    }
+    text << "\n    }" << (++settings < medians.size() ? "," : "") << "\n";
+  }
+  text << "  },\n  \"tolerances\": {\n";
+  const Json& tolerances = file["tolerances"];
+  size_t quantities = 0;
+  for (const auto& [quantity, value] : tolerances.items()) {
+    text << "    " << Json(quantity).dump() << ": {\"absolute\": " << value["absolute"].dump()
+         << ", \"relative\": " << value["relative"].dump() << "}"
+         << (++quantities < tolerances.size() ? "," : "") << "\n";
+  }
+  text << "  }\n}\n";
+  return text.str();
+}
+
+int Update() {
+  Json file = ReadExpected();
+  if (!file.contains("about") || !file.contains("tolerances")) {
+    std::cerr << RIGEL_ACCURACY_DATA
+              << ": no \"about\" or no \"tolerances\", which only an editor adds\n";
+    return 1;
+  }
+  const Json before = file.value("medians", Json::object());
+  file["medians"] = Json::object();
+  int changed = 0;
+  for (const Setting& setting : kSettings) {
+    const Json medians = Measure(setting);
+    file["medians"][setting.name] = medians;
+    const Json old = before.value(setting.name, Json::object());
+    Json quantities = medians;
+    quantities.update(old);
+    for (const auto& [quantity, ignored] : quantities.items()) {
+      const Json was = old.value(quantity, Json());
+      const Json is = medians.value(quantity, Json());
+      if (was == is) continue;
+      ++changed;
+      std::cout << setting.name << "/" << quantity << ": " << Text(was) << " -> " << Text(is)
+                << "\n";
+    }
+  }
+  std::ofstream stream(RIGEL_ACCURACY_DATA, std::ios::binary);
+  stream << Format(file);
+  stream.close();
+  if (!stream || testing::Test::HasFailure()) {
+    std::cerr << RIGEL_ACCURACY_DATA << ": cannot be written\n";
+    return 1;
+  }
+  std::cout << changed << " medians changed in " << RIGEL_ACCURACY_DATA << "\n";
+  return 0;
+}
+
+}  // namespace
+}  // namespace rigel
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  if (argc == 2 && std::strcmp(argv[1], "--update") == 0) return rigel::Update();
+  if (argc > 1) {
+    std::cerr << "unexpected argument " << argv[1] << "; expected --update or nothing\n";
+    return 2;
+  }
+  return RUN_ALL_TESTS();
+}
