@@ -149,15 +149,19 @@ TEST(Allocation, SolversMakeNone) {
   for (const SolverInfo& solver : SolverCatalogue()) {
     for (const bool inter : {false, true}) {
       const FramePair pair = MakePair(&solver, inter, 60);
-      const PreparedMatches matches = Prepare(pair, solver.prior);
-      const Sampler sampler(GroupedMatches(pair.rig, pair.matches).groups(), matches.size());
+      const GroupedMatches grouped(pair.rig, pair.matches);
+      // Indices into the matches in their grouped order.
+      const PreparedMatches matches(pair.rig, grouped.matches(),
+                                    Prepare(pair, solver.prior).alignment());
+      const Sampler sampler(grouped.groups(), solver.sampling, solver.sample_size);
+      ASSERT_TRUE(sampler.CanDraw()) << solver.name;
       Solutions solutions;
       Random random(1);
       int sample[64];
       int num_solutions = 0;
       EXPECT_EQ(Allocations([&] {
                   for (int k = 0; k < 20; ++k) {
-                    sampler.Draw(solver.sample_size, &random, sample);
+                    sampler.Draw(&random, sample);
                     num_solutions += solver.solve(matches, sample, &solutions);
                   }
                 }),
@@ -174,13 +178,17 @@ TEST(Allocation, SolversMakeNone) {
 TEST(Allocation, SamplerMakesNone) {
   const FramePair pair = MakePair(nullptr, true, 100);
   const GroupedMatches grouped(pair.rig, pair.matches);
-  const Sampler sampler(grouped.groups(), grouped.size());
   Random random(1);
   int sample[64];
-  EXPECT_EQ(Allocations([&] {
-              for (int size = 1; size <= 17; ++size) sampler.Draw(size, &random, sample);
-            }),
-            0);
+  for (const SampleKind kind :
+       {SampleKind::kSpread, SampleKind::kOneCamera, SampleKind::kOnePairPlusOne}) {
+    const Sampler sampler(grouped.groups(), kind, 17);
+    ASSERT_TRUE(sampler.CanDraw());
+    EXPECT_EQ(Allocations([&] {
+                for (int k = 0; k < 20; ++k) sampler.Draw(&random, sample);
+              }),
+              0);
+  }
 }
 
 TEST(Allocation, ScoreMakesNone) {
@@ -192,13 +200,20 @@ TEST(Allocation, ScoreMakesNone) {
               score = grouped.Score(*pair.truth, 1.5, std::numeric_limits<double>::infinity(),
                                     &inliers);
               grouped.Score(Pose(), 1.5, 0.1 * score, &inliers);
+              grouped.ScoreInFront(*pair.truth, 1.5, score, &inliers);
             }),
             0);
   EXPECT_GT(score, 0.0);
-  // The caller's buffer is grown once.
+  // The caller's buffers are grown once.
   std::vector<double> errors;
   grouped.SquaredErrors(Pose(), &errors);
-  EXPECT_EQ(Allocations([&] { grouped.SquaredErrors(*pair.truth, &errors); }), 0);
+  std::vector<char> selected;
+  grouped.SelectInliers(Pose(), 1.5, &errors, &selected);
+  EXPECT_EQ(Allocations([&] {
+              grouped.SquaredErrors(*pair.truth, &errors);
+              grouped.SelectInliers(*pair.truth, 1.5, &errors, &selected);
+            }),
+            0);
 }
 
 TEST(Allocation, PreparingTheNextFramePairKeepsTheMemory) {
@@ -210,29 +225,21 @@ TEST(Allocation, PreparingTheNextFramePairKeepsTheMemory) {
 
 // The real thing without its optimizer, which lives in refine.
 struct RigSolver {
-  struct Model : Pose {
-    bool operator==(const Model& other) const { return R == other.R && t == other.t; }
-  };
-  struct Solutions {
-    rigel::Solutions list;
-    int size() const { return list.size(); }
-    Model operator[](int k) const {
-      Model model;
-      static_cast<Pose&>(model) = list[k];
-      return model;
-    }
-  };
+  using Model = Pose;
+  using Solutions = rigel::Solutions;
 
   int num_data() const { return grouped->size(); }
   int sample_size() const { return info->sample_size; }
-  bool Draw(Random* random, int* sample) const {
-    return sampler->Draw(info->sample_size, random, sample);
-  }
+  bool Draw(Random* random, int* sample) const { return sampler->Draw(random, sample); }
   int MinimalSolver(const int* sample, Solutions* solutions) const {
-    return info->solve(*matches, sample, &solutions->list);
+    return info->solve(*matches, sample, solutions);
+  }
+  double QuickScore(const Model& model, double bound) const {
+    int inliers = 0;
+    return grouped->Score(model, 1.5, bound, &inliers);
   }
   double Score(const Model& model, double bound, int* inliers) const {
-    return grouped->Score(model, 1.5, bound, inliers);
+    return grouped->ScoreInFront(model, 1.5, bound, inliers);
   }
   bool Admit(Model*) const { return true; }
   bool LocalOptimize(Model*) const { return false; }
@@ -250,7 +257,7 @@ TEST(Allocation, RansacLoopMakesNone) {
   const GroupedMatches grouped(pair.rig, pair.matches);
   const PreparedMatches matches(pair.rig, grouped.matches(),
                                 Prepare(pair, info->prior).alignment());
-  const Sampler sampler(grouped.groups(), grouped.size());
+  const Sampler sampler(grouped.groups(), info->sampling, info->sample_size);
   const RigSolver solver = {info, &grouped, &matches, &sampler};
   RigSolver::Solutions solutions;
   RansacResult<RigSolver::Model> result;

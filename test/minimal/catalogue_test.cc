@@ -33,7 +33,18 @@ TEST(Catalogue, HasTheSolversOfThePaper) {
     EXPECT_EQ(info->sample_size, expected.sample_size) << expected.name;
     EXPECT_EQ(info->prior, expected.prior) << expected.name;
     EXPECT_EQ(info->exact, expected.exact) << expected.name;
+    EXPECT_EQ(info->sampling, SampleKind::kSpread) << expected.name;
   }
+}
+
+TEST(Catalogue, HasTheBaselines) {
+  for (const char* name : {"17pt-li", "6pt-stewenius", "6pt-ventura", "4pt-lee", "4pt-liu",
+                           "4pt-sweeney", "5pt+1", "2pt-choi", "2pt-ackermann"}) {
+    EXPECT_NE(FindSolver(name), nullptr) << name;
+  }
+  // What their samples must be; others would find nothing.
+  EXPECT_EQ(FindSolver("5pt+1")->sampling, SampleKind::kOnePairPlusOne);
+  EXPECT_EQ(FindSolver("2pt-choi")->sampling, SampleKind::kOneCamera);
 }
 
 TEST(Catalogue, NamesAreUniqueAndFindThemselves) {

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "rigel/core/cheirality.h"
 #include "rigel/core/epipolar.h"
 #include "rigel/core/random.h"
 #include "rigel/problems/synthetic.h"
@@ -184,6 +185,88 @@ TEST(GroupedMatches, SquaredErrorsAreThoseOfCoreInGroupedOrder) {
       const double r = SampsonError(pose, pair.rig, pair.matches[grouped.original(k)]);
       EXPECT_NEAR(errors[k], r * r, 1e-9 * r * r + 1e-18);
     }
+  }
+}
+
+// By the definition in the header: the Sampson error is below the threshold and the match does not
+// lie behind a camera with a parallax that noise cannot make.
+bool IsInlierInFront(const FramePair& pair, const Pose& pose, const Match& match) {
+  const double r = SampsonError(pose, pair.rig, match);
+  if (!(r * r < kThreshold * kThreshold)) return false;
+  const PinholeCamera& c1 = pair.rig.cameras[match.camera1].intrinsics;
+  const PinholeCamera& c2 = pair.rig.cameras[match.camera2].intrinsics;
+  const double min_sin_parallax =
+      2.0 * kThreshold / std::min(std::min(c1.fx, c1.fy), std::min(c2.fx, c2.fy));
+  const Cheirality cheirality =
+      TestCheirality(pose, MakeRayPair(pair.rig, match), min_sin_parallax);
+  return cheirality == Cheirality::kInFront || cheirality == Cheirality::kUndecided;
+}
+
+TEST(GroupedMatches, ScoreInFrontCountsMatchesBehindAsOutliers) {
+  for (const int num_matches : {5, 64, 65, 300}) {
+    int behind = 0;
+    for (int seed = 0; seed < 20; ++seed) {
+      const FramePair pair = MakePair(num_matches, seed);
+      const GroupedMatches grouped(pair.rig, pair.matches);
+      // The truth, a neighbour, and the neighbour with the sign of t turned.
+      Pose turned = PoseNear(*pair.truth, seed);
+      turned.t = -turned.t;
+      for (const Pose& pose : {*pair.truth, PoseNear(*pair.truth, seed), turned}) {
+        double expected = 0.0;
+        int expected_inliers = 0;
+        for (const Match& match : pair.matches) {
+          const double r = SampsonError(pose, pair.rig, match);
+          const bool inlier = IsInlierInFront(pair, pose, match);
+          expected += inlier ? r * r : kThreshold * kThreshold;
+          expected_inliers += inlier;
+        }
+        int inliers = -1;
+        const double score = grouped.ScoreInFront(pose, kThreshold, kInf, &inliers);
+        EXPECT_NEAR(score, expected, 1e-9 * expected);
+        EXPECT_EQ(inliers, expected_inliers);
+        int all_inliers = 0;
+        EXPECT_GE(score * (1 + 1e-12), grouped.Score(pose, kThreshold, kInf, &all_inliers));
+        EXPECT_LE(inliers, all_inliers);
+        behind += all_inliers - inliers;
+        // The bound, as of Score().
+        EXPECT_EQ(grouped.ScoreInFront(pose, kThreshold, std::nextafter(score, kInf), &inliers),
+                  score);
+        EXPECT_EQ(inliers, expected_inliers);
+        EXPECT_GT(grouped.ScoreInFront(pose, kThreshold, 0.5 * score, &inliers), 0.5 * score);
+      }
+    }
+    EXPECT_GT(behind, 0) << "the two scores were to differ";
+  }
+}
+
+TEST(GroupedMatches, SelectInliersAgreesWithTheScore) {
+  for (int seed = 0; seed < 20; ++seed) {
+    const FramePair pair = MakePair(150, seed);
+    const GroupedMatches grouped(pair.rig, pair.matches);
+    const Pose pose = PoseNear(*pair.truth, seed);
+    std::vector<double> errors, squared;
+    std::vector<char> selected(7, 2);
+    const int count = grouped.SelectInliers(pose, kThreshold, &errors, &selected);
+    int inliers = 0;
+    grouped.ScoreInFront(pose, kThreshold, kInf, &inliers);
+    EXPECT_EQ(count, inliers);
+    grouped.SquaredErrors(pose, &squared);
+    EXPECT_EQ(errors, squared);
+    ASSERT_EQ(selected.size(), 150u);
+    for (int k = 0; k < 150; ++k) {
+      EXPECT_EQ(selected[k] == 1, IsInlierInFront(pair, pose, grouped.matches()[k])) << k;
+    }
+  }
+}
+
+TEST(GroupedMatches, RaysAreInGroupedOrder) {
+  const FramePair pair = MakePair(50, 9);
+  const GroupedMatches grouped(pair.rig, pair.matches);
+  for (int k = 0; k < grouped.size(); ++k) {
+    const RayPair rays = MakeRayPair(pair.rig, pair.matches[grouped.original(k)]);
+    EXPECT_EQ(grouped.rays(k).ray1.x, rays.ray1.x);
+    EXPECT_EQ(grouped.rays(k).ray2.x, rays.ray2.x);
+    EXPECT_EQ(grouped.rays(k).ray2.s, rays.ray2.s);
   }
 }
 

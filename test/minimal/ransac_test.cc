@@ -68,6 +68,16 @@ class LineSolver {
     return static_cast<int>(solutions->size());
   }
 
+  // As the score of what Admit makes of the line, or lower.
+  double QuickScore(Line line, double bound) const {
+    ++quick_scores;
+    if (zero_quick_score) return 0.0;
+    if (flip_negative && line.slope < 0) line.slope = -line.slope;
+    int inliers = 0;
+    --scores;
+    return Score(line, bound, &inliers);
+  }
+
   double Score(const Line& line, double bound, int* inliers) const {
     ++scores;
     double sum = 0.0;
@@ -114,6 +124,7 @@ class LineSolver {
 
   mutable int draws = 0;
   mutable int scores = 0;
+  mutable int quick_scores = 0;
   mutable int optimizations = 0;
   int max_draws = 1 << 30;
   bool nan_first = false;
@@ -122,6 +133,7 @@ class LineSolver {
   bool admit_none = false;
   bool flip_negative = false;
   bool spoil_optimization = false;
+  bool zero_quick_score = false;
 
  private:
   std::vector<double> x_, y_;
@@ -272,6 +284,20 @@ TEST(Ransac, TriesEverySolutionOfASample) {
   const RansacResult<Line> result = Fit(solver);
   EXPECT_TRUE(result.best == expected.best);
   EXPECT_EQ(result.hypotheses, 2 * result.iterations);
+}
+
+TEST(Ransac, TheQuickScoreSavesTheFullOneAndDecidesNothing) {
+  LineSolver solver(40, 80);
+  const RansacResult<Line> quick = Fit(solver);
+  EXPECT_EQ(solver.quick_scores, quick.hypotheses);
+  EXPECT_LT(solver.scores, 40) << "only for hypotheses that lead";
+  // The loosest of all bounds, 0, rejects nothing.
+  solver.zero_quick_score = true;
+  const RansacResult<Line> full = Fit(solver);
+  EXPECT_TRUE(quick.best == full.best);
+  EXPECT_TRUE(quick.best_minimal == full.best_minimal);
+  EXPECT_EQ(quick.score, full.score);
+  EXPECT_EQ(quick.iterations, full.iterations);
 }
 
 TEST(Ransac, WhatIsNotAdmittedIsNotFound) {

@@ -35,51 +35,127 @@ int GroupOf(const std::vector<MatchGroup>& groups, int index) {
   return -1;
 }
 
+constexpr SampleKind kKinds[] = {SampleKind::kSpread, SampleKind::kOneCamera,
+                                 SampleKind::kOnePairPlusOne};
+
 TEST(Sampler, DrawsDistinctIndicesInRange) {
-  for (const std::vector<int>& sizes :
-       {std::vector<int>{20}, {10, 10}, {1, 19}, {5, 1, 14}, {1, 1, 1, 1, 1}}) {
-    const std::vector<MatchGroup> groups = MakeGroups(sizes);
-    const int total = Total(groups);
-    const Sampler sampler(groups, total);
-    Random random(1);
-    for (int size = 1; size <= total; ++size) {
-      for (int k = 0; k < 200; ++k) {
-        std::vector<int> sample(size + 1, -7);
-        ASSERT_TRUE(sampler.Draw(size, &random, sample.data()));
-        EXPECT_EQ(sample[size], -7) << "wrote beyond the sample";
-        sample.pop_back();
-        const std::set<int> distinct(sample.begin(), sample.end());
-        EXPECT_EQ(distinct.size(), sample.size());
-        EXPECT_GE(*distinct.begin(), 0);
-        EXPECT_LT(*distinct.rbegin(), total);
+  for (const SampleKind kind : kKinds) {
+    for (const std::vector<int>& sizes :
+         {std::vector<int>{20}, {10, 10}, {1, 19}, {5, 1, 14}, {1, 1, 1, 1, 1}}) {
+      const std::vector<MatchGroup> groups = MakeGroups(sizes);
+      const int total = Total(groups);
+      Random random(1);
+      for (int size = 1; size <= total; ++size) {
+        const Sampler sampler(groups, kind, size);
+        for (int k = 0; k < 200 && sampler.CanDraw(); ++k) {
+          std::vector<int> sample(size + 1, -7);
+          ASSERT_TRUE(sampler.Draw(&random, sample.data()));
+          EXPECT_EQ(sample[size], -7) << "wrote beyond the sample";
+          sample.pop_back();
+          const std::set<int> distinct(sample.begin(), sample.end());
+          EXPECT_EQ(distinct.size(), sample.size());
+          EXPECT_GE(*distinct.begin(), 0);
+          EXPECT_LT(*distinct.rbegin(), total);
+        }
       }
     }
   }
 }
 
-TEST(Sampler, TheFirstTwoComeFromDifferentCameraPairs) {
+TEST(Sampler, SpreadSamplesBeginInDifferentCameraPairs) {
   // However lopsided the groups are: a sample of one pair says nothing about scale.
   for (const std::vector<int>& sizes : {std::vector<int>{10, 10}, {99, 1}, {1, 99}, {3, 90, 7}}) {
     const std::vector<MatchGroup> groups = MakeGroups(sizes);
-    const Sampler sampler(groups, Total(groups));
+    const Sampler sampler(groups, SampleKind::kSpread, 4);
     Random random(2);
     for (int k = 0; k < 2000; ++k) {
       int sample[4];
-      ASSERT_TRUE(sampler.Draw(4, &random, sample));
+      ASSERT_TRUE(sampler.Draw(&random, sample));
       EXPECT_NE(GroupOf(groups, sample[0]), GroupOf(groups, sample[1]));
     }
   }
 }
 
-TEST(Sampler, FailsWhereThereAreTooFewMatches) {
+TEST(Sampler, OneCameraSamplesAreOfOneIntraCameraGroup) {
+  std::vector<MatchGroup> groups = MakeGroups({10, 30, 3, 20});
+  groups[1].camera2 = 0;  // inter-camera
+  const Sampler sampler(groups, SampleKind::kOneCamera, 4);
   Random random(3);
-  int sample[8] = {};
-  EXPECT_FALSE(Sampler({}, 0).Draw(1, &random, sample));
-  EXPECT_FALSE(Sampler(MakeGroups({3}), 3).Draw(4, &random, sample));
-  EXPECT_FALSE(Sampler(MakeGroups({1, 2}), 3).Draw(4, &random, sample));
-  EXPECT_TRUE(Sampler(MakeGroups({1, 2}), 3).Draw(3, &random, sample));
-  EXPECT_FALSE(Sampler(MakeGroups({3}), 3).Draw(0, &random, sample));
-  EXPECT_FALSE(Sampler(MakeGroups({3}), 3).Draw(-1, &random, sample));
+  std::vector<int> counts(4);
+  const int draws = 6000;
+  for (int k = 0; k < draws; ++k) {
+    int sample[4];
+    ASSERT_TRUE(sampler.Draw(&random, sample));
+    const int group = GroupOf(groups, sample[0]);
+    for (const int index : sample) EXPECT_EQ(GroupOf(groups, index), group);
+    ++counts[group];
+  }
+  EXPECT_EQ(counts[1], 0);
+  EXPECT_EQ(counts[2], 0) << "too small";
+  // In proportion to the number of matches, 10 to 20; five standard deviations.
+  EXPECT_NEAR(counts[0], draws / 3.0, 5 * std::sqrt(draws * 2.0 / 9.0));
+}
+
+TEST(Sampler, OnePairPlusOneSamplesEndInAnotherPair) {
+  std::vector<MatchGroup> groups = MakeGroups({10, 5, 20, 4});
+  groups[2].camera2 = 0;  // any pair will do, inter-camera or not
+  const Sampler sampler(groups, SampleKind::kOnePairPlusOne, 6);
+  Random random(4);
+  std::set<int> firsts, lasts;
+  for (int k = 0; k < 2000; ++k) {
+    int sample[6];
+    ASSERT_TRUE(sampler.Draw(&random, sample));
+    const int group = GroupOf(groups, sample[0]);
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(GroupOf(groups, sample[i]), group);
+    EXPECT_NE(GroupOf(groups, sample[5]), group);
+    firsts.insert(group);
+    lasts.insert(sample[5]);
+  }
+  EXPECT_EQ(firsts, (std::set<int>{0, 1, 2})) << "every pair of five matches, no smaller one";
+  EXPECT_EQ(lasts.size(), 39u) << "any match can be the last";
+  // With one pair only the last is of that pair too.
+  const Sampler single(MakeGroups({6}), SampleKind::kOnePairPlusOne, 6);
+  int sample[6];
+  ASSERT_TRUE(single.Draw(&random, sample));
+  EXPECT_EQ(std::set<int>(sample, sample + 6).size(), 6u);
+}
+
+TEST(Sampler, FailsWhereThereIsNoSample) {
+  struct Case {
+    std::vector<int> sizes;
+    SampleKind kind;
+    int size;
+    bool possible;
+  };
+  const Case cases[] = {
+      {{}, SampleKind::kSpread, 1, false},
+      {{3}, SampleKind::kSpread, 4, false},
+      {{1, 2}, SampleKind::kSpread, 4, false},
+      {{1, 2}, SampleKind::kSpread, 3, true},
+      {{3}, SampleKind::kSpread, 0, false},
+      {{3}, SampleKind::kSpread, -1, false},
+      {{100}, SampleKind::kSpread, 64, true},
+      {{100}, SampleKind::kSpread, 65, false},
+      {{}, SampleKind::kOneCamera, 2, false},
+      {{1, 1, 1}, SampleKind::kOneCamera, 2, false},
+      {{1, 2, 1}, SampleKind::kOneCamera, 2, true},
+      {{4, 4, 4}, SampleKind::kOnePairPlusOne, 6, false},
+      {{5}, SampleKind::kOnePairPlusOne, 6, false},
+      {{5, 1}, SampleKind::kOnePairPlusOne, 6, true},
+      {{6}, SampleKind::kOnePairPlusOne, 6, true},
+  };
+  for (size_t k = 0; k < std::size(cases); ++k) {
+    const Case& c = cases[k];
+    const Sampler sampler(MakeGroups(c.sizes), c.kind, c.size);
+    Random random(5);
+    int sample[64] = {};
+    EXPECT_EQ(sampler.CanDraw(), c.possible) << "case " << k;
+    EXPECT_EQ(sampler.Draw(&random, sample), c.possible) << "case " << k;
+  }
+  // Inter-camera matches only: nothing for a one-camera solver.
+  std::vector<MatchGroup> inter = MakeGroups({50});
+  inter[0].camera2 = 7;
+  EXPECT_FALSE(Sampler(inter, SampleKind::kOneCamera, 2).CanDraw());
 }
 
 double ChiSquare(const std::vector<int>& counts, double expected) {
@@ -93,13 +169,13 @@ TEST(Sampler, OneGroupIsDrawnUniformly) {
   const int n = 10;
   const int size = 4;
   const int draws = 20000;
-  const Sampler sampler(MakeGroups({n}), n);
+  const Sampler sampler(MakeGroups({n}), SampleKind::kSpread, size);
   Random random(4);
   std::vector<std::vector<int>> counts(size, std::vector<int>(n));
   std::vector<int> pairs(n * n);
   for (int k = 0; k < draws; ++k) {
     int sample[size];
-    ASSERT_TRUE(sampler.Draw(size, &random, sample));
+    ASSERT_TRUE(sampler.Draw(&random, sample));
     for (int i = 0; i < size; ++i) ++counts[i][sample[i]];
     ++pairs[sample[1] * n + sample[2]];
   }
@@ -119,12 +195,12 @@ TEST(Sampler, WithinGroupsEveryMatchIsDrawnAlike) {
   const std::vector<MatchGroup> groups = MakeGroups({12, 8, 20});
   const int n = Total(groups);
   const int draws = 20000;
-  const Sampler sampler(groups, n);
+  const Sampler sampler(groups, SampleKind::kSpread, 4);
   Random random(5);
   std::vector<int> first(n), any(n);
   for (int k = 0; k < draws; ++k) {
     int sample[4];
-    ASSERT_TRUE(sampler.Draw(4, &random, sample));
+    ASSERT_TRUE(sampler.Draw(&random, sample));
     ++first[sample[0]];
     for (const int index : sample) ++any[index];
   }
@@ -141,12 +217,12 @@ TEST(Sampler, WithinGroupsEveryMatchIsDrawnAlike) {
 
 TEST(Sampler, TheSeedFixesTheSamples) {
   const std::vector<MatchGroup> groups = MakeGroups({30, 70});
-  const Sampler sampler(groups, 100);
+  const Sampler sampler(groups, SampleKind::kSpread, 5);
   Random a(6), b(6);
   for (int k = 0; k < 100; ++k) {
     int first[5], second[5];
-    sampler.Draw(5, &a, first);
-    sampler.Draw(5, &b, second);
+    sampler.Draw(&a, first);
+    sampler.Draw(&b, second);
     EXPECT_TRUE(std::equal(first, first + 5, second));
   }
 }
