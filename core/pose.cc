@@ -87,11 +87,16 @@ Eigen::Matrix3d LeftJacobianSO3(const Eigen::Vector3d& omega) {
 Eigen::Matrix3d SmallestRotation(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const Eigen::Vector3d v = a.cross(b);
   const double c = a.dot(b);
-  const double sin_angle = v.norm();
-  if (sin_angle < 1e-12) {
-    if (c > 0) return ExpSO3(v);
-    return ExpSO3(kPi * TangentBasis(a).col(0));
+  if (c < 0) {
+    // Half a turn about an axis across a, then the rest from -a: near b = -a the cross product has
+    // lost its digits, but an axis made perpendicular to a has not.
+    const Eigen::Vector3d across = v - a * (a.dot(v) / a.squaredNorm());
+    const Eigen::Vector3d axis = across.norm() > 1e-15 ? Eigen::Vector3d(across.normalized())
+                                                       : Eigen::Vector3d(TangentBasis(a).col(0));
+    return SmallestRotation(-a, b) * ExpSO3(kPi * axis);
   }
+  const double sin_angle = v.norm();
+  if (sin_angle < 1e-12) return ExpSO3(v);
   return ExpSO3(std::atan2(sin_angle, c) / sin_angle * v);
 }
 

@@ -25,7 +25,7 @@ int PolishRoots(const double* c, const double* starts, int num_starts, double* r
       // Quadratic convergence: the error left is of the order of the step squared.
       if (!(std::abs(step) > 1e-7 * std::abs(z))) break;
     }
-    if (!(std::abs(step) <= 1e-5 * (1e-6 + std::abs(z)))) continue;
+    if (!std::isfinite(z) || !(std::abs(step) <= 1e-5 * (1e-6 + std::abs(z)))) continue;
     bool duplicate = false;
     for (int n = 0; n < count; ++n) {
       duplicate = duplicate || std::abs(roots[n] - z) <= 1e-9 * std::abs(z);

@@ -51,11 +51,18 @@ namespace polynomial_internal {
 inline constexpr double kTinyLeading = 1e-14;
 
 template <int N>
+inline bool AllFinite(const double* c) {
+  // 0 times an infinity or a NaN is a NaN.
+  double poison = 0.0;
+  for (int k = 0; k <= N; ++k) poison += 0.0 * c[k];
+  return poison == 0.0;
+}
+
+template <int N>
 inline bool LeadingIsZero(const double* c) {
   double largest = 0.0;
   for (int k = 0; k < N; ++k) largest = std::max(largest, std::abs(c[k]));
-  // Written so that a NaN or an infinity counts as zero, all the way down to no roots.
-  return !(std::abs(c[N]) > kTinyLeading * largest) || !std::isfinite(c[N]);
+  return !(std::abs(c[N]) > kTinyLeading * largest);
 }
 
 // `steps` Newton steps; steps that do not reduce |p| are not taken.
@@ -138,21 +145,22 @@ inline void BernsteinOnUnitInterval(const double* c, double at_one, double* b) {
   b[N] = at_one;
 }
 
+// Zeros do not count.
 template <int N>
 inline int SignVariations(const double* b) {
   int variations = 0;
-  bool negative = b[0] < 0;
+  double last = b[0];
   for (int k = 1; k <= N; ++k) {
     if (b[k] == 0.0) continue;
-    variations += (b[k] < 0) != negative;
-    negative = b[k] < 0;
+    variations += last != 0.0 && (b[k] < 0) != (last < 0) ? 1 : 0;
+    last = b[k];
   }
   return variations;
 }
 
-// Roots in (0, 1] of p, p(0) != 0.
+// Roots in (0, 1) of p, p(0) != 0, and 1 if `with_one` and p(1) is zero exactly.
 template <int N>
-int RootsInUnitInterval(const double* c, double at_one, double* roots) {
+int RootsInUnitInterval(const double* c, double at_one, bool with_one, double* roots) {
   struct Piece {
     double low, width;
     double b[N + 1];
@@ -165,21 +173,25 @@ int RootsInUnitInterval(const double* c, double at_one, double* roots) {
   stack[0].low = 0.0;
   stack[0].width = 1.0;
   BernsteinOnUnitInterval<N>(c, at_one, stack[0].b);
-  if (at_one == 0.0) roots[count++] = 1.0;
+  if (at_one == 0.0 && with_one) roots[count++] = 1.0;
   while (top >= 0 && count < N) {
     Piece& piece = stack[top];
     double* b = piece.b;
-    // The sign just inside the lower end: a zero there is a root that was already counted.
-    int first = 0;
-    while (first < N && b[first] == 0.0) ++first;
-    b[0] = first == 0 ? b[0] : b[first];
     const int variations = SignVariations<N>(b);
     if (variations == 0) {
       --top;
     } else if (variations == 1) {
-      // The chord's zero; of the control polygon's end points only.
-      const double guess = piece.low + piece.width * (b[N] == 0.0 ? 0.5 : b[0] / (b[0] - b[N]));
-      roots[count++] = BracketedNewton<N>(c, piece.low, piece.low + piece.width, b[0] < 0, guess);
+      // The sign just inside the lower end: a zero at the end itself is a root already counted.
+      int first = 0;
+      while (b[first] == 0.0) ++first;
+      // Start at the zero of the chord, but not at an end: another root there would catch it.
+      const double chord = b[0] / (b[0] - b[N]);
+      const double fraction = chord > 0.0625 && chord < 0.9375 ? chord
+                              : chord <= 0.0625                ? 0.0625
+                                                               : 0.9375;
+      const double guess = piece.low + piece.width * fraction;
+      roots[count++] =
+          BracketedNewton<N>(c, piece.low, piece.low + piece.width, b[first] < 0, guess);
       --top;
     } else if (piece.width < 1e-9 || top > kMaxLevel) {
       roots[count++] = piece.low + 0.5 * piece.width;
@@ -207,18 +219,19 @@ int RootsInUnitInterval(const double* c, double at_one, double* roots) {
 
 template <>
 inline int RealRoots<1>(const double* c, double* roots) {
-  if (polynomial_internal::LeadingIsZero<1>(c) || !std::isfinite(c[0])) return 0;
+  if (!polynomial_internal::AllFinite<1>(c) || polynomial_internal::LeadingIsZero<1>(c)) return 0;
   roots[0] = -c[0] / c[1];
   return 1;
 }
 
 template <>
 inline int RealRoots<2>(const double* c, double* roots) {
+  if (!polynomial_internal::AllFinite<2>(c)) return 0;
   if (polynomial_internal::LeadingIsZero<2>(c)) return RealRoots<1>(c, roots);
   const double half_b = 0.5 * c[1];
   const double discriminant = half_b * half_b - c[2] * c[0];
   // A double root survives the rounding of its discriminant.
-  if (!(discriminant > -1e-15 * half_b * half_b)) return 0;
+  if (!(discriminant >= -1e-15 * half_b * half_b)) return 0;
   const double root = std::sqrt(std::max(discriminant, 0.0));
   const double s = half_b >= 0 ? -half_b - root : -half_b + root;
   roots[0] = s / c[2];
@@ -229,6 +242,7 @@ inline int RealRoots<2>(const double* c, double* roots) {
 
 template <>
 inline int RealRoots<3>(const double* c, double* roots) {
+  if (!polynomial_internal::AllFinite<3>(c)) return 0;
   if (polynomial_internal::LeadingIsZero<3>(c)) return RealRoots<2>(c, roots);
   // Depressed form (Press et al., Numerical Recipes, section 5.6), then Newton on the original.
   const double inv = 1.0 / c[3];
@@ -279,6 +293,7 @@ inline int RealRoots<3>(const double* c, double* roots) {
 template <int N>
 int RealRoots(const double* c, double* roots) {
   static_assert(N >= 4);
+  if (!polynomial_internal::AllFinite<N>(c)) return 0;
   if (polynomial_internal::LeadingIsZero<N>(c)) return RealRoots<N - 1>(c, roots);
   int count = 0;
   if (c[0] == 0.0) {
@@ -328,11 +343,9 @@ int RealRoots(const double* c, double* roots) {
     }
     const double end = mirrored ? at_minus_one : at_one;
     double found[N + 1];
-    const int num_found = polynomial_internal::RootsInUnitInterval<N>(piece, end, found);
+    const int num_found = polynomial_internal::RootsInUnitInterval<N>(piece, end, !reversed, found);
     for (int k = 0; k < num_found && count < N; ++k) {
       const double x = mirrored ? -found[k] : found[k];
-      // 1 itself is found by the inner piece.
-      if (reversed && found[k] == 1.0) continue;
       roots[count++] = scale * (reversed ? 1.0 / x : x);
     }
   }

@@ -18,6 +18,8 @@
 
 namespace rigel {
 
+inline constexpr int kMaxFinalists = 16;
+
 struct RansacOptions {
   double threshold_px = 1.5;   // > 0; 3 sigma keeps the estimate efficient
   double confidence = 0.9999;  // in (0, 1): that one sample of inliers was drawn
@@ -25,6 +27,11 @@ struct RansacOptions {
   // At least so many: noise makes most samples of inliers poor hypotheses.
   int min_iterations = 100;
   bool local_optimization = true;
+  // After the loop, so many hypotheses are locally optimized that do best at a loose threshold and
+  // differ from one another and from the best: where the prior is off, no minimal hypothesis fits
+  // well at the threshold, and the one that fits best may be far from the truth. 0 to
+  // kMaxFinalists.
+  int num_finalists = 4;
   uint64_t seed = 1;
 
   bool IsValid(std::string* error) const;
@@ -53,6 +60,9 @@ struct RansacResult {
 //   Admit(Model*)              false if physically impossible; may change the sign of t
 //   Score(model, bound, int* inliers)   lower is better; may stop early above `bound`
 //   LocalOptimize(Model*)      false: unchanged
+//   LooseScore(model, bound)   lower is better, at a loose threshold, cheap; may stop above `bound`
+//   OptimizeLoosely(Model*)    local optimization from a model that is far off; false: no model
+//   Similar(model, model)      true if optimizing both is likely to end in one place
 template <class S, class = void>
 struct IsRansacSolver : std::false_type {};
 template <class S>
@@ -83,6 +93,44 @@ inline int IterationsNeeded(double inlier_ratio, int sample_size, double confide
   return n < max_iterations ? std::max(1, static_cast<int>(std::ceil(n))) : max_iterations;
 }
 
+namespace ransac_internal {
+
+// The best hypotheses so far of which no two are similar, best first.
+template <class Model>
+struct Finalists {
+  struct Item {
+    Model model;
+    double score;
+  };
+  Item items[kMaxFinalists];
+  int size = 0;
+
+  template <class Solver>
+  void Add(const Solver& solver, const Model& model, double score, int capacity) {
+    // A similar one that is better makes this one superfluous; similar ones that are worse go.
+    int kept = 0;
+    for (int k = 0; k < size; ++k) {
+      const bool similar = solver.Similar(items[k].model, model);
+      if (similar && items[k].score <= score) return;
+      if (!similar) items[kept++] = items[k];
+    }
+    size = kept;
+    if (size == capacity) {
+      if (!(score < items[size - 1].score)) return;
+      --size;
+    }
+    int k = size++;
+    for (; k > 0 && items[k - 1].score > score; --k) items[k] = items[k - 1];
+    items[k] = {model, score};
+  }
+
+  double Worst(int capacity) const {
+    return size == capacity ? items[size - 1].score : std::numeric_limits<double>::infinity();
+  }
+};
+
+}  // namespace ransac_internal
+
 // `options` must be valid. No heap allocation but what the solver's methods make.
 template <class Solver>
 RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOptions& options,
@@ -95,7 +143,19 @@ RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOp
   Random random(options.seed);
   int sample[64];
   const int max_iterations = options.max_iterations;
+  const int capacity = options.local_optimization ? options.num_finalists : 0;
+  ransac_internal::Finalists<Model> finalists;
   int needed = max_iterations;
+
+  const auto keep_best = [&](const Model& model, double score, int inliers) {
+    if (!(score < result.score)) return;
+    result.best = model;
+    result.score = score;
+    result.num_inliers = inliers;
+    needed = IterationsNeeded(inliers / static_cast<double>(solver.num_data()),
+                              solver.sample_size(), options.confidence, max_iterations);
+  };
+
   while (result.iterations < std::min(max_iterations, std::max(needed, options.min_iterations))) {
     ++result.iterations;
     if (!solver.Draw(&random, sample)) break;
@@ -103,33 +163,33 @@ RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOp
     for (int k = 0; k < static_cast<int>(solutions->size()); ++k) {
       ++result.hypotheses;
       Model model = (*solutions)[k];
+      if (capacity > 0) {
+        const double loose = solver.LooseScore(model, finalists.Worst(capacity));
+        if (loose < finalists.Worst(capacity)) finalists.Add(solver, model, loose, capacity);
+      }
       // Also false for NaN. The quick score never rejects a winner.
       if (!(solver.QuickScore(model, result.minimal_score) < result.minimal_score)) continue;
       if (!solver.Admit(&model)) continue;
       int inliers = 0;
-      double score = solver.Score(model, result.minimal_score, &inliers);
+      const double score = solver.Score(model, result.minimal_score, &inliers);
       if (!(score < result.minimal_score)) continue;
       result.found = true;
       result.best_minimal = model;
       result.minimal_score = score;
+      keep_best(model, score, inliers);
       if (options.local_optimization && solver.LocalOptimize(&model)) {
         int optimized_inliers = 0;
-        const double optimized = solver.Score(model, score, &optimized_inliers);
-        if (optimized < score) {
-          score = optimized;
-          inliers = optimized_inliers;
-        } else {
-          model = result.best_minimal;
-        }
-      }
-      if (score < result.score) {
-        result.best = model;
-        result.score = score;
-        result.num_inliers = inliers;
-        needed = IterationsNeeded(inliers / static_cast<double>(solver.num_data()),
-                                  solver.sample_size(), options.confidence, max_iterations);
+        const double optimized = solver.Score(model, result.score, &optimized_inliers);
+        keep_best(model, optimized, optimized_inliers);
       }
     }
+  }
+  for (int k = 0; k < finalists.size && result.found; ++k) {
+    Model model = finalists.items[k].model;
+    if (solver.Similar(model, result.best) || !solver.OptimizeLoosely(&model)) continue;
+    int inliers = 0;
+    const double score = solver.Score(model, result.score, &inliers);
+    keep_best(model, score, inliers);
   }
   return result;
 }

@@ -1,6 +1,9 @@
 #include "rigel/refine/estimate_motion.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <vector>
 
 #include "rigel/minimal/prepared_matches.h"
 #include "rigel/minimal/sampler.h"
@@ -20,6 +23,7 @@ class FramePairSolver {
                   const Alignment& alignment, double threshold_px)
       : solver_(solver),
         matches_(matches),
+        subset_(matches.rig(), EvenSubset(matches.matches())),
         prepared_(matches.rig(), matches.matches(), alignment),
         sampler_(matches.groups(), solver.sampling, solver.sample_size),
         residuals_(matches, ResidualKind::kSampson),
@@ -49,21 +53,64 @@ class FramePairSolver {
     return model->AllFinite() && ResolveSign(matches_, threshold_px_, model);
   }
 
+  bool Similar(const Model& a, const Model& b) const {
+    constexpr double kMinTrace = 3.0 - 3.05e-4;  // 1 + 2 cos(1 deg)
+    constexpr double kMinCosine = 0.94;          // 20 deg
+    return a.R.cwiseProduct(b.R).sum() > kMinTrace &&
+           std::abs(a.t.dot(b.t)) > kMinCosine * a.t.norm() * b.t.norm();
+  }
+
+  double LooseScore(const Model& model, double bound) const {
+    int inliers = 0;
+    return subset_.Score(model, kLooseFactor * threshold_px_, bound, &inliers);
+  }
+
+  // In two steps, at the loose threshold and at the threshold.
+  bool OptimizeLoosely(Model* model) const {
+    for (const double threshold : {kLooseFactor * threshold_px_, threshold_px_}) {
+      if (!OptimizeAt(threshold, model)) return false;
+    }
+    return Admit(model);
+  }
+
   bool LocalOptimize(Model* model) const {
-    SmallEngineOptions options;
-    options.loss_scale = threshold_px_;
-    options.inverse_scale = intra_only_ || !model->has_scale;
     Model optimized = *model;
-    if (options.inverse_scale) ResolveSignAndScale(matches_, threshold_px_, &optimized);
-    matches_.SelectInliers(optimized, threshold_px_, &squared_errors_, &inliers_);
-    if (!engine_.Minimize(options, inliers_, &optimized) || !Admit(&optimized)) return false;
+    if (!OptimizeAt(threshold_px_, &optimized) || !Admit(&optimized)) return false;
     *model = optimized;
     return true;
   }
 
  private:
+  // A motion prior that is off by half a degree moves points by a few pixels.
+  static constexpr double kLooseFactor = 4.0;
+  // So many matches tell a good hypothesis from a bad one loosely.
+  static constexpr int kSubset = 128;
+
+  static std::vector<Match> EvenSubset(const std::vector<Match>& matches) {
+    const size_t n = matches.size();
+    const size_t count = std::min<size_t>(n, kSubset);
+    std::vector<Match> subset;
+    subset.reserve(count);
+    for (size_t k = 0; k < count; ++k) subset.push_back(matches[k * n / count]);
+    return subset;
+  }
+
+  bool OptimizeAt(double threshold, Model* model) const {
+    SmallEngineOptions options;
+    options.loss_scale = threshold;
+    options.inverse_scale = intra_only_ || !model->has_scale;
+    if (options.inverse_scale) {
+      ResolveSignAndScale(matches_, threshold, model);
+    } else {
+      ResolveSign(matches_, threshold, model);
+    }
+    matches_.SelectInliers(*model, threshold, &squared_errors_, &inliers_);
+    return engine_.Minimize(options, inliers_, model);
+  }
+
   const SolverInfo& solver_;
   const GroupedMatches& matches_;
+  GroupedMatches subset_;
   PreparedMatches prepared_;
   Sampler sampler_;
   EpipolarResiduals residuals_;

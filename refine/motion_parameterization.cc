@@ -49,7 +49,8 @@ bool MotionParameterization::Set(RotationForm rotation, TranslationForm translat
       translation_size_ = 1;
       const Eigen::Vector3d in_plane = start.t - normal * normal.dot(start.t);
       norm_ = start.t.norm();
-      if (!(in_plane.norm() > 0)) return false;
+      // Along the normal only rounding is left in the plane.
+      if (!(in_plane.norm() > 1e-9 * norm_)) return false;
       direction_ = in_plane.normalized();
       tangent_.col(0) = normal.cross(direction_);
       break;

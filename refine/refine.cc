@@ -292,7 +292,8 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
     return Fail(Termination::kDegenerate, "the start has no place in the parameterization");
   }
   const int size = parameterization.size();
-  if (num_inliers_ < size) {
+  // The reference of the depth forms is exact: it adds no equation.
+  if (num_inliers_ - (depths ? 1 : 0) < size) {
     return Fail(Termination::kDegenerate, std::to_string(num_inliers_) + " inliers for " +
                                               std::to_string(size) + " free parameters");
   }
@@ -375,9 +376,15 @@ void Refiner::FillUncertainty(const Pose& pose) {
     summary_.rotation_observable = RadToDeg(summary_.rotation_sigma) <= kRotationObservableDeg;
   }
   summary_.parallax_px = ParallaxPercentilePx(matches_, mask_, pose);
-  summary_.translation_observable = summary_.covariance.has_value() &&
-                                    RadToDeg(summary_.direction_sigma) <= kDirectionObservableDeg &&
-                                    summary_.parallax_px > kParallaxSigmas * noise_px_;
+  // A noise level that is given is believed; an estimated one may be a fit to the noise.
+  summary_.parallax_limit_px =
+      kParallaxSigmas *
+      (options_.noise_px.has_value() ? noise_px_ : std::max(noise_px_, kMinMatchNoisePx));
+  summary_.translation_observable =
+      summary_.covariance.has_value() &&
+      RadToDeg(summary_.direction_sigma) <= kDirectionObservableDeg &&
+      (std::isfinite(summary_.parallax_px) ? summary_.parallax_px > summary_.parallax_limit_px
+                                           : summary_.relative_scale_sigma * kParallaxSigmas < 1.0);
   summary_.scale_observable = summary_.scale_observable && summary_.translation_observable;
 }
 
@@ -481,7 +488,11 @@ std::string RefineSummary::BriefReport() const {
 std::string RefineSummary::ObservabilityReport() const {
   char text[256];
   if (!translation_observable) {
-    if (parallax_px >= 0 && !(parallax_px > kParallaxSigmas * noise_px)) {
+    if (parallax_px >= 0 && !std::isfinite(parallax_px)) {
+      std::snprintf(text, sizeof(text),
+                    "|t| is consistent with zero: its standard deviation is %.0f percent of it",
+                    100 * relative_scale_sigma);
+    } else if (parallax_px >= 0 && !(parallax_px > parallax_limit_px)) {
       std::snprintf(
           text, sizeof(text),
           "|t| is consistent with zero: 80%% of the matches move < %.2f px, noise %.2f px",

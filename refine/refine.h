@@ -92,6 +92,7 @@ struct RefineSummary {
   double direction_sigma = -1.0;       // radians
   double relative_scale_sigma = -1.0;  // of |t|, a fraction; infinite if not determined
   double parallax_px = -1.0;           // see ParallaxPercentilePx()
+  double parallax_limit_px = -1.0;     // what it has to exceed for translation_observable
   bool rotation_observable = false;
   bool translation_observable = false;  // the direction of t means something
   bool scale_observable = false;

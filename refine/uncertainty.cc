@@ -94,7 +94,9 @@ double ParallaxPercentilePx(const GroupedMatches& matches, const std::vector<cha
     const PinholeCamera& c = camera.intrinsics;
     const Eigen::Vector3d x1 = pose.R * camera.Q * c.Normalize(m.pixel1).normalized();
     const Eigen::Vector3d x2 = camera.Q * c.Normalize(m.pixel2).normalized();
-    parallax.push_back(0.5 * (c.fx + c.fy) * x1.cross(x2).norm());
+    const double arm = (pose.R * camera.s - camera.s).norm();
+    const double share = pose.t.norm() > 0 ? pose.t.norm() / (pose.t.norm() + arm) : 0.0;
+    parallax.push_back(0.5 * (c.fx + c.fy) * share * x1.cross(x2).norm());
   }
   if (parallax.empty()) return std::numeric_limits<double>::infinity();
   const auto nth = parallax.begin() + static_cast<long>(parallax.size() * 4 / 5);

@@ -26,6 +26,10 @@ inline constexpr double kDirectionObservableDeg = 10.0;
 // the image noise beyond what the rotation moves them. Without translation the matches still fit
 // some direction, as well as their noise does, and the covariance does not know it.
 inline constexpr double kParallaxSigmas = 5.0;
+// Matchers are no better than this, pixels, however well the matches fit; a fit to noise would seem
+// to be.
+inline constexpr double kMinMatchNoisePx = 0.1;
+// Without intra-camera matches |t| has to exceed kParallaxSigmas of its own standard deviations.
 // Rotation is observable if its largest standard deviation is at most this.
 inline constexpr double kRotationObservableDeg = 10.0;
 
@@ -49,8 +53,9 @@ double RelativeScaleSigma(const Matrix6d& information, const Pose& pose);
 double RotationSigma(const Matrix6d& covariance);
 double DirectionSigma(const Matrix6d& covariance, const Eigen::Vector3d& t);
 
-// The angle in pixels that 80 percent of the intra-camera matches of the mask stay below: how far a
-// match moves besides the rotation and the camera's own arm. Infinity if there are none.
+// What 80 percent of the intra-camera matches of the mask stay below: the angle in pixels by which
+// a match moves besides the rotation, times the share |t| / (|t| + |R s - s|) of it that the body's
+// translation can have made and not the camera's arm. Infinity if there are none.
 double ParallaxPercentilePx(const GroupedMatches& matches, const std::vector<char>& mask,
                             const Pose& pose);
 

@@ -43,6 +43,9 @@ struct Setting {
   RefineForm refine;
 };
 
+// What gtest and ctest call the parameter.
+void PrintTo(const Setting& setting, std::ostream* stream) { *stream << setting.name; }
+
 constexpr auto kForward = MotionPattern::kForward;
 constexpr auto kRandom = MotionPattern::kRandom;
 constexpr auto kSideways = MotionPattern::kSideways;

@@ -66,7 +66,18 @@ void* operator new(std::size_t size) { return CountedNew(size); }
 void* operator new[](std::size_t size) { return CountedNew(size); }
 void* operator new(std::size_t size, std::align_val_t a) { return CountedNew(size, a); }
 void* operator new[](std::size_t size, std::align_val_t a) { return CountedNew(size, a); }
+// std::stable_sort allocates by these.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  Count();
+  return std::malloc(size == 0 ? 1 : size);
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+  Count();
+  return std::malloc(size == 0 ? 1 : size);
+}
 void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, const std::nothrow_t&) noexcept { std::free(p); }
+void operator delete[](void* p, const std::nothrow_t&) noexcept { std::free(p); }
 void operator delete[](void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
@@ -243,6 +254,9 @@ struct RigSolver {
   }
   bool Admit(Model*) const { return true; }
   bool LocalOptimize(Model*) const { return false; }
+  double LooseScore(const Model& model, double bound) const { return QuickScore(model, bound); }
+  bool OptimizeLoosely(Model*) const { return false; }
+  bool Similar(const Model&, const Model&) const { return false; }
 
   const SolverInfo* info;
   const GroupedMatches* grouped;

@@ -326,6 +326,19 @@ TEST(GroupedMatches, NoMatches) {
   EXPECT_TRUE(grouped.groups().empty());
 }
 
+TEST(ScoreKernel, StopsWithinAGroup) {
+  // Most rigs have few camera pairs: to stop between groups only would save nothing.
+  const FramePair pair = MakePair(3000, 10);
+  const GroupedMatches grouped(pair.rig, pair.matches);
+  const MatchGroup& group = grouped.groups()[0];
+  ASSERT_GT(group.size, 300);
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = Eigen::Matrix3d::Zero();
+  int inliers = 0;
+  const double sum = TruncatedSampsonSum(grouped.Pixels(group), F.data(), 1.0, 40.0, &inliers);
+  EXPECT_GT(sum, 40.0);
+  EXPECT_LE(sum, 100.0) << "each match counts 1";
+}
+
 TEST(ScoreKernel, InliersAreAddedToTheCount) {
   const FramePair pair = MakePair(100, 8);
   const GroupedMatches grouped(pair.rig, pair.matches);

@@ -99,6 +99,9 @@ class LineSolver {
   }
 
   // Least squares on the inliers.
+  double LooseScore(const Line&, double) const { return std::numeric_limits<double>::infinity(); }
+  bool OptimizeLoosely(Line*) const { return false; }
+  bool Similar(const Line&, const Line&) const { return false; }
   bool LocalOptimize(Line* line) const {
     ++optimizations;
     if (spoil_optimization) {
@@ -275,6 +278,17 @@ TEST(Ransac, IgnoresNanHypotheses) {
   EXPECT_TRUE(result.found);
   EXPECT_TRUE(result.best == expected.best);
   EXPECT_EQ(result.hypotheses, 2 * expected.hypotheses);
+}
+
+TEST(Ransac, IgnoresNanScores) {
+  // Where the quick score lets a NaN through.
+  LineSolver solver(60, 60);
+  const RansacResult<Line> expected = Fit(solver);
+  solver.nan_first = true;
+  solver.zero_quick_score = true;
+  const RansacResult<Line> result = Fit(solver);
+  EXPECT_TRUE(result.best == expected.best);
+  EXPECT_TRUE(result.best_minimal == expected.best_minimal);
 }
 
 TEST(Ransac, TriesEverySolutionOfASample) {

@@ -215,6 +215,24 @@ TEST(Sampler, WithinGroupsEveryMatchIsDrawnAlike) {
   }
 }
 
+TEST(Sampler, TheSecondOfASpreadSampleIsAnyMatchOfOtherPairs) {
+  const std::vector<MatchGroup> groups = MakeGroups({12, 8, 20});
+  const Sampler sampler(groups, SampleKind::kSpread, 4);
+  Random random(7);
+  std::vector<int> seconds(40);
+  int draws = 0;
+  for (int k = 0; k < 60000; ++k) {
+    int sample[4];
+    ASSERT_TRUE(sampler.Draw(&random, sample));
+    // The group in the middle has others on both sides.
+    if (GroupOf(groups, sample[0]) != 1) continue;
+    ++seconds[sample[1]];
+    ++draws;
+  }
+  seconds.erase(seconds.begin() + 12, seconds.begin() + 20);
+  EXPECT_LT(ChiSquare(seconds, draws / 32.0), 31 + 5 * std::sqrt(2.0 * 31));
+}
+
 TEST(Sampler, TheSeedFixesTheSamples) {
   const std::vector<MatchGroup> groups = MakeGroups({30, 70});
   const Sampler sampler(groups, SampleKind::kSpread, 5);

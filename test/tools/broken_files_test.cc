@@ -150,7 +150,7 @@ TEST_F(BrokenFilesTest, EachIsToldInOneLineAndTheOthersAreReported) {
 }
 
 TEST_F(BrokenFilesTest, WhatCannotBeOpenedIsToldToo) {
-  std::filesystem::create_symlink("/nonexistent/of/rigel", directory_ + "/dangling.matches");
+  std::filesystem::create_symlink("/proc/nonexistent/of/rigel", directory_ + "/dangling.matches");
   for (const std::string tool : {"estimate", "compare"}) {
     const Outcome run = RunTool(tool, {"--matches=" + directory_});
     EXPECT_EXIT_CODE(run, 1);

@@ -39,12 +39,12 @@ std::map<std::string, Args> FlagsOfTools() {
             "rotation_axis", "rotation_deg", "seed"}}};
 }
 
-// A run that would succeed but for what is added to it. No file is there: who looks at files
-// before the flags fails with 1 instead of 2.
+// A run that would succeed but for what is added to it and that the files are not there, nor can be
+// made: who looks at files before the flags fails with 1 instead of 2.
 Args Minimal(const std::string& tool) {
   if (tool == "benchmark") return {"--solvers=4pt", "--trials=2"};
-  if (tool == "simulate") return {"--output=/nonexistent/of/rigel/../x", "--pairs=1"};
-  return {"--matches=/nonexistent/of/rigel"};
+  if (tool == "simulate") return {"--output=/proc/nonexistent/of/rigel", "--pairs=1"};
+  return {"--matches=/proc/nonexistent/of/rigel"};
 }
 
 void ExpectUsageError(const std::string& tool, const Args& wrong, const std::string& what) {
@@ -153,7 +153,7 @@ TEST(Flags, UnknownSolverIsAUsageErrorThatListsTheSolvers) {
 
 TEST(Flags, UnwritableOutputFileFails) {
   // Solvers are named, so that nothing takes long.
-  for (const char* flag : {"--json=/nonexistent/directory/x", "--json=/dev/full", "--json=/"}) {
+  for (const char* flag : {"--json=/proc/nonexistent/x", "--json=/dev/full", "--json=/"}) {
     const Outcome run = RunTool("benchmark", {"--solvers=4pt", "--trials=2", flag});
     EXPECT_EXIT_CODE(run, 1);
     EXPECT_THAT(run.err, HasSubstr(std::string(flag).substr(7)));
@@ -166,7 +166,7 @@ class Outputs : public ToolsTest {};
 TEST_F(Outputs, UnwritableFileFailsAndTheTableIsThereAllTheSame) {
   const std::string matches = Simulate("in", {"--pairs=1", "--num_matches=30"});
   for (const char* tool : {"estimate", "compare"}) {
-    for (const char* file : {"/nonexistent/directory/x", "/dev/full", "/"}) {
+    for (const char* file : {"/proc/nonexistent/x", "/dev/full", "/"}) {
       for (const char* flag : {"--json=", "--csv="}) {
         const Outcome run = RunTool(tool, {"--matches=" + matches, std::string(flag) + file});
         EXPECT_EXIT_CODE(run, 1);
