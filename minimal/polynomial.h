@@ -158,6 +158,12 @@ inline int SignVariations(const double* b) {
   return variations;
 }
 
+// True if p(x) is zero but for rounding: between two roots that rounding may have made complex.
+template <int N>
+inline bool IsRounding(const double* c, double x) {
+  return std::abs(EvaluatePolynomial<N>(c, x)) <= 4e-15 * PolynomialMagnitude<N>(c, x);
+}
+
 // Roots in (0, 1) of p, p(0) != 0, and 1 if `with_one` and p(1) is zero exactly.
 template <int N>
 int RootsInUnitInterval(const double* c, double at_one, bool with_one, double* roots) {
@@ -193,7 +199,8 @@ int RootsInUnitInterval(const double* c, double at_one, bool with_one, double* r
       roots[count++] =
           BracketedNewton<N>(c, piece.low, piece.low + piece.width, b[first] < 0, guess);
       --top;
-    } else if (piece.width < 1e-9 || top > kMaxLevel) {
+    } else if (piece.width < 1e-9 || top > kMaxLevel ||
+               (piece.width < 1e-7 && IsRounding<N>(c, piece.low + 0.5 * piece.width))) {
       roots[count++] = piece.low + 0.5 * piece.width;
       --top;
     } else {
@@ -307,6 +314,14 @@ int RealRoots(const double* c, double* roots) {
     const int num_others = RealRoots<N - 1>(rest, others);
     for (int k = 0; k < num_others && count < N; ++k) roots[count++] = others[k];
     return count;
+  }
+
+  // A double root at zero that rounding has made complex is seen by neither piece beside it.
+  double largest = 0.0;
+  for (int k = 0; k <= N; ++k) largest = std::max(largest, std::abs(c[k]));
+  if (std::abs(c[0]) <= 4e-15 * largest && std::abs(c[2]) >= 1e-6 * largest &&
+      c[1] * c[1] < 4.0 * c[0] * c[2]) {
+    roots[count++] = 0.0;
   }
 
   // Cut at a typical root instead of at 1: x = scale y, a power of two, so that nothing is rounded.

@@ -68,20 +68,27 @@ struct IsRansacSolver : std::false_type {};
 template <class S>
 struct IsRansacSolver<
     S,
-    std::void_t<typename S::Model, typename S::Solutions,
-                decltype(int{std::declval<const S&>().num_data()}),
-                decltype(int{std::declval<const S&>().sample_size()}),
-                decltype(bool{
-                    std::declval<const S&>().Draw(std::declval<Random*>(), std::declval<int*>())}),
-                decltype(int{std::declval<const S&>().MinimalSolver(
-                    std::declval<const int*>(), std::declval<typename S::Solutions*>())}),
-                decltype(double{std::declval<const S&>().QuickScore(
-                    std::declval<const typename S::Model&>(), 0.0)}),
-                decltype(double{std::declval<const S&>().Score(
-                    std::declval<const typename S::Model&>(), 0.0, std::declval<int*>())}),
-                decltype(bool{std::declval<const S&>().Admit(std::declval<typename S::Model*>())}),
-                decltype(bool{std::declval<const S&>().LocalOptimize(
-                    std::declval<typename S::Model*>())})>> : std::true_type {};
+    std::void_t<
+        typename S::Model, typename S::Solutions,
+        decltype(double{
+            std::declval<const S&>().LooseScore(std::declval<const typename S::Model&>(), 0.0)}),
+        decltype(
+            bool{std::declval<const S&>().OptimizeLoosely(std::declval<typename S::Model*>())}),
+        decltype(bool{std::declval<const S&>().Similar(std::declval<const typename S::Model&>(),
+                                                       std::declval<const typename S::Model&>())}),
+        decltype(int{std::declval<const S&>().num_data()}),
+        decltype(int{std::declval<const S&>().sample_size()}),
+        decltype(
+            bool{std::declval<const S&>().Draw(std::declval<Random*>(), std::declval<int*>())}),
+        decltype(int{std::declval<const S&>().MinimalSolver(
+            std::declval<const int*>(), std::declval<typename S::Solutions*>())}),
+        decltype(double{
+            std::declval<const S&>().QuickScore(std::declval<const typename S::Model&>(), 0.0)}),
+        decltype(double{std::declval<const S&>().Score(std::declval<const typename S::Model&>(),
+                                                       0.0, std::declval<int*>())}),
+        decltype(bool{std::declval<const S&>().Admit(std::declval<typename S::Model*>())}),
+        decltype(bool{std::declval<const S&>().LocalOptimize(std::declval<typename S::Model*>())})>>
+    : std::true_type {};
 
 // Iterations after which, with probability `confidence`, a sample of inliers only has been drawn.
 inline int IterationsNeeded(double inlier_ratio, int sample_size, double confidence,
