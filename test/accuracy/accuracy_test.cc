@@ -173,7 +173,7 @@ TEST_P(Accuracy, MediansAreAsExpected) {
     const bool agree = want.is_number() && got.is_number() &&
                        std::abs(got.get<double>() - want.get<double>()) <= tolerance;
     EXPECT_TRUE(agree) << name << "/" << quantity << ": expected " << Text(want) << " +- "
-                       << Rounded(tolerance) << ", got " << Text(got)
+                       << Text(Rounded(tolerance)) << ", got " << Text(got)
                        << "\nif that is meant to be: test/accuracy/update.sh";
   }
 }
