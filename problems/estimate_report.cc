@@ -62,28 +62,32 @@ std::string EstimateTable(const std::vector<FramePair>& pairs,
       continue;
     }
     const bool refined = e.refine.IsSolutionUsable();
-    // Without a refinement nothing is known of what can be observed.
-    const bool direction = !refined || DirectionKnown(e);
-    const bool scale = !refined ? e.raw.has_scale : e.refine.scale_observable;
+    // Where no refinement was asked for, nothing is known of what can be observed.
+    const bool not_asked = e.status == EstimateStatus::kSuccess && !refined;
+    const bool rotation = not_asked || e.refine.rotation_observable;
+    const bool direction = not_asked || DirectionKnown(e);
+    const bool scale = not_asked ? e.raw.has_scale : e.refine.scale_observable;
     any_unobservable = any_unobservable || !direction || !scale;
     const Eigen::Vector3d d = e.pose.t.normalized();
     const auto sigma = [&](double radians) {
       return refined && radians >= 0 ? FormatFitted(RadToDeg(radians), 3, 5) : std::string("-");
     };
-    table.AddRow({ShortName(pairs[k].name), EstimateStatusName(e.status),
-                  FormatFitted(RadToDeg(LogSO3(e.pose.R).norm()), 3, 6),
-                  sigma(e.refine.rotation_sigma), direction ? FormatNumber(d.x(), 4) : "-",
-                  direction ? FormatNumber(d.y(), 4) : "-",
-                  direction ? FormatNumber(d.z(), 4) : "-",
-                  direction ? sigma(e.refine.direction_sigma) : "-",
-                  scale ? FormatFitted(e.pose.t.norm(), 4, 6) : "-", std::to_string(e.num_inliers),
-                  refined ? FormatFitted(e.refine.median_residual_px, 3, 5) : "-",
-                  refined ? ObservableLetters(e.refine) : "-"});
+    table.AddRow(
+        {ShortName(pairs[k].name), EstimateStatusName(e.status),
+         rotation ? FormatFitted(RadToDeg(LogSO3(e.pose.R).norm()), 3, 6) : "-",
+         rotation ? sigma(e.refine.rotation_sigma) : "-", direction ? FormatNumber(d.x(), 4) : "-",
+         direction ? FormatNumber(d.y(), 4) : "-", direction ? FormatNumber(d.z(), 4) : "-",
+         direction ? sigma(e.refine.direction_sigma) : "-",
+         scale ? FormatFitted(e.pose.t.norm(), 4, 6) : "-", std::to_string(e.num_inliers),
+         refined ? FormatFitted(e.refine.median_residual_px, 3, 5) : "-",
+         refined ? ObservableLetters(e.refine) : "-"});
   }
   std::string text = table.Format();
   if (any_unobservable) {
     text +=
-        "\n\"-\": not observable, as the translation direction where |t| is consistent with zero.\n"
+        "\n\"-\": not observable, as the translation direction where |t| is consistent with zero; "
+        "or not\n"
+        "computed. "
         "obs: R rotation, t direction of translation, s scale |t|.\n";
   }
   for (size_t k = 0; k < pairs.size(); ++k) {

@@ -160,6 +160,7 @@ class Refiner {
   bool ChooseReference(const Pose& pose, RayPair* reference) const;
   bool Solve(bool scale_free, Pose* pose);
   bool Iterate(Pose* pose);
+  bool ExceedsChance() const;
   void FillUncertainty(const Pose& pose);
   bool Fail(Termination termination, const std::string& message);
 
@@ -196,8 +197,19 @@ void Refiner::EstimateNoise() {
     if (mask_[k]) errors.push_back(std::sqrt(squared_errors_[k]));
   }
   summary_.median_residual_px = Median(&errors);
-  // A floor keeps noise-free problems regular.
-  noise_px_ = std::max(options_.noise_px.value_or(1.4826 * summary_.median_residual_px), 1e-9);
+  // Residuals of as many matches as parameters are zero whatever the noise is. With little
+  // redundancy the threshold says more of the noise than they do: it is meant to be three sigma.
+  constexpr int kParameters = 6;
+  constexpr int kMinRedundancy = 10;
+  const int redundancy = num_inliers_ - kParameters;
+  double estimated = 1.4826 * summary_.median_residual_px;
+  if (redundancy < kMinRedundancy) {
+    estimated = std::max(estimated, options_.threshold_px / 3.0);
+  } else {
+    estimated *= std::sqrt(num_inliers_ / static_cast<double>(redundancy));
+  }
+  // The floor keeps noise-free problems regular.
+  noise_px_ = std::max(options_.noise_px.value_or(estimated), 1e-9);
   summary_.noise_px = noise_px_;
 }
 
@@ -364,6 +376,32 @@ bool Refiner::Iterate(Pose* pose) {
   return true;
 }
 
+// Could so many matches agree by chance? Random points fall into the band of the threshold around
+// an epipolar line with the probability q of its share of the image, a fit takes six of them for
+// free, and many fits were tried: the Chernoff bound on the binomial tail of the others has to beat
+// that number (a contrario, as Moisan and Stival, IJCV 2004).
+bool Refiner::ExceedsChance() const {
+  constexpr int kFree = 6;
+  constexpr double kLogTests = 16.0;  // ln of 10^7 tries
+  const int n = matches_.size() - kFree;
+  const int k = num_inliers_ - kFree;
+  if (n <= 0 || k <= 0) return false;
+  double q = 0.0;
+  for (const MatchGroup& group : matches_.groups()) {
+    const PinholeCamera& c = matches_.rig().cameras[group.camera2].intrinsics;
+    const double width = c.width > 0 ? c.width : std::max(2.0 * std::abs(c.cx), c.fx);
+    const double height = c.height > 0 ? c.height : std::max(2.0 * std::abs(c.cy), c.fy);
+    const double band = 2.0 * options_.threshold_px * std::hypot(width, height);
+    q += std::min(1.0, band / (width * height)) * group.size / matches_.size();
+  }
+  const double share = k / static_cast<double>(n);
+  if (share <= q) return false;
+  const double divergence =
+      share * std::log(share / q) +
+      (share < 1.0 ? (1.0 - share) * std::log((1.0 - share) / (1.0 - q)) : 0.0);
+  return n * divergence > kLogTests;
+}
+
 void Refiner::FillUncertainty(const Pose& pose) {
   const Matrix6d information = Information(pose);
   summary_.relative_scale_sigma = RelativeScaleSigma(information, pose);
@@ -385,6 +423,10 @@ void Refiner::FillUncertainty(const Pose& pose) {
       RadToDeg(summary_.direction_sigma) <= kDirectionObservableDeg &&
       (std::isfinite(summary_.parallax_px) ? summary_.parallax_px > summary_.parallax_limit_px
                                            : summary_.relative_scale_sigma * kParallaxSigmas < 1.0);
+  if (!ExceedsChance()) {
+    summary_.rotation_observable = false;
+    summary_.translation_observable = false;
+  }
   summary_.scale_observable = summary_.scale_observable && summary_.translation_observable;
 }
 
@@ -487,6 +529,12 @@ std::string RefineSummary::BriefReport() const {
 
 std::string RefineSummary::ObservabilityReport() const {
   char text[256];
+  if (!rotation_observable) {
+    std::snprintf(text, sizeof(text),
+                  "%d matches agree: too few, or no more than chance allows, to determine a motion",
+                  num_inliers);
+    return text;
+  }
   if (!translation_observable) {
     if (parallax_px >= 0 && !std::isfinite(parallax_px)) {
       std::snprintf(text, sizeof(text),
@@ -498,7 +546,8 @@ std::string RefineSummary::ObservabilityReport() const {
           "|t| is consistent with zero: 80%% of the matches move < %.2f px, noise %.2f px",
           parallax_px, noise_px);
     } else if (direction_sigma >= 0) {
-      std::snprintf(text, sizeof(text), "its standard deviation is %.1f deg",
+      std::snprintf(text, sizeof(text),
+                    "the standard deviation of the translation direction is %.1f deg",
                     RadToDeg(direction_sigma));
     } else {
       std::snprintf(text, sizeof(text), "the matches do not determine it");

@@ -27,8 +27,8 @@ DEFINE_string(
     "what the refinement frees: none (no refinement), full (rotation and translation), prior "
     "(the prior is exact), depths (a reference match is exact), prior-depths (both)");
 DEFINE_string(residual, "sampson",
-              "sampson (pixels), angular, or algebraic (collapses to zero motion with intra-camera "
-              "matches; for comparison)");
+              "sampson (pixels), angular, or algebraic (for comparison: not robust, and with "
+              "intra-camera matches and a free scale it collapses to zero motion)");
 DEFINE_string(loss, "cauchy",
               "robust loss of the refinement: none, huber, cauchy, tukey, truncated");
 DEFINE_double(threshold_px, 1.5,
