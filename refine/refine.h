@@ -55,8 +55,8 @@ struct RefineOptions {
   int max_rounds = 5;           // >= 1; selections of inliers
   int max_num_iterations = 50;  // >= 0, a round
   ScaleMode scale = ScaleMode::kAuto;
-  // 1-sigma image noise where it is known; else estimated (1.4826 times the median |residual| of
-  // the inliers).
+  // 1-sigma image noise where it is known; else estimated: 1.4826 times the median |residual| of
+  // the n inliers, times sqrt(n / (n - 6)); at least a third of the threshold below 16 inliers.
   std::optional<double> noise_px;
 
   bool IsValid(std::string* error) const;

@@ -557,7 +557,9 @@ TEST(Refine, TheSummaryFitsTheMotionInTheOrderOfTheInput) {
     }
     EXPECT_EQ(summary.num_inliers, static_cast<int>(errors.size()));
     EXPECT_NEAR(summary.median_residual_px, MedianOf(errors), 1e-9);
-    EXPECT_NEAR(summary.noise_px, 1.4826 * summary.median_residual_px, 1e-12);
+    const double n = summary.num_inliers;
+    EXPECT_NEAR(summary.noise_px, 1.4826 * summary.median_residual_px * std::sqrt(n / (n - 6)),
+                1e-12);
     EXPECT_NEAR(summary.noise_px, scene.noise_px, 0.2 * scene.noise_px);
     EXPECT_LE(summary.final_cost, summary.initial_cost * 1.2);  // over a larger selection
     EXPECT_GE(summary.num_rounds, 1);
