@@ -21,8 +21,9 @@
 
 namespace rigel {
 
-// Below this squared sine of the angle between its aligned rays a match does not move beyond rounding.
-// A sample whose matches all stay says nothing of translation: solvers return no solution.
+// Below this squared sine of the angle between its aligned rays a match does not move beyond
+// rounding. A sample whose matches all stay says nothing of translation: solvers return no
+// solution.
 inline constexpr double kNoParallax2 = 1e-18;
 
 struct PreparedMatch {

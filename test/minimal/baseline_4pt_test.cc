@@ -278,7 +278,8 @@ TEST(Baseline4pt, NoMotionGivesFiniteMotionsOrNone) {
         c.solve(problem.Prepare(c.prior), kSample, &solutions);
         for (const Solution& solution : solutions) EXPECT_TRUE(solution.AllFinite());
         if (inter) {
-          EXPECT_LT(BestRotationError(solutions, problem.truth), 1e-6) << c.name << " seed " << seed;
+          EXPECT_LT(BestRotationError(solutions, problem.truth), 1e-6)
+              << c.name << " seed " << seed;
         }
       }
     }

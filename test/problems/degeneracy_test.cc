@@ -50,8 +50,8 @@ TEST(DegeneracyTest, UndeterminedScaleIsFlagged) {
     // Ackermann motion of a camera off the rotation's axis does determine the scale.
     if (std::string(solver.name) == "2pt-ackermann") continue;
     for (const Configuration configuration :
-         {Configuration::kPureTranslation, Configuration::kCentralRig,
-          Configuration::kPanoramicRig, Configuration::kSingleCamera}) {
+         {Configuration::kPureTranslation, Configuration::kCentralRig, Configuration::kPanoramicRig,
+          Configuration::kSingleCamera}) {
       const DegeneracyCell cell = MeasureDegeneracy(solver, configuration, 50);
       if (cell.solved < 0.05) continue;
       EXPECT_GE(cell.no_scale, 0.95 * cell.solved)
