@@ -285,8 +285,9 @@ class RealSolutions {
 
   // Appends the values of x to the `count` in `x`, up to kMaxSize in all; returns their new number.
   // The characteristic polynomial is expanded about `centre`, which finds the roots near it best;
-  // only those nearer than 1 if `near_only`.
-  int FindX(double centre, bool near_only, double* x, int count) const;
+  // only those nearer than 1 if `near_only`. `multiplicity` roots are known to be at the centre and
+  // left out: rounding would spread them, and telling them apart is the costliest part of all.
+  int FindX(double centre, bool near_only, int multiplicity, double* x, int count) const;
 
   // The root x of the characteristic polynomial by the secant method on the matrix itself, which
   // knows roots in a cluster better than the coefficients do.
@@ -516,11 +517,13 @@ class RootFinder {
 };
 
 template <int kMaxSize>
-int RealSolutions<kMaxSize>::FindX(double centre, bool near_only, double* x, int count) const {
+int RealSolutions<kMaxSize>::FindX(double centre, bool near_only, int multiplicity, double* x,
+                                   int count) const {
   double c[kMaxSize + 1];
   double roots[kMaxSize];
   CharacteristicPolynomial(centre, c);
-  const int num_roots = RootFinder<kMaxSize>(c, n_).Find(near_only, roots);
+  const int num_roots =
+      RootFinder<kMaxSize>(c + multiplicity, n_ - multiplicity).Find(near_only, roots);
   for (int k = 0; k < num_roots && count < kMaxSize; ++k) x[count++] = roots[k] + centre;
   return count;
 }

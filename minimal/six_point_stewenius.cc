@@ -124,8 +124,8 @@ int RealRotations(const Equations& equations, const int* leading, int num_degree
   }
   RealSolutions<kSize> roots(&action);
   double x[kSize];
-  int num_roots = roots.FindX(0.0, false, x, 0);
-  if (centre != nullptr) num_roots = roots.FindX(*centre, true, x, num_roots);
+  int num_roots = roots.FindX(0.0, false, 0, x, 0);
+  if (centre != nullptr) num_roots = roots.FindX(*centre, true, 0, x, num_roots);
   for (int k = 0; k < num_roots; ++k) {
     const auto solution = roots.Solution(centre != nullptr ? roots.Refine(x[k]) : x[k]);
     r[k] = {solution[0], solution[1], solution[2]};

@@ -26,12 +26,17 @@ SixPointSystem::SixPointSystem(const PreparedMatches& matches, const int* sample
     : solutions_(solutions) {
   Eigen::Matrix<double, 6, 3> n;
   bool finite = true;
+  const Eigen::Vector3d* other = nullptr;  // a second centre
   for (int k = 0; k < 6; ++k) {
     rays_[k] = &matches.rays(sample[k]);
     const Ray& ray1 = rays_[k]->ray1;
     const Ray& ray2 = rays_[k]->ray2;
     finite = finite && ray1.x.allFinite() && ray2.x.allFinite();
     all_intra_ = all_intra_ && ray1.s == ray2.s;
+    if (ray1.s != rays_[0]->ray1.s) {
+      if (other == nullptr) other = &ray1.s;
+      two_centres_ = two_centres_ && ray1.s == *other;
+    }
     spread_ =
         std::max({spread_, (ray1.s - rays_[0]->ray1.s).norm(), (ray2.s - rays_[0]->ray1.s).norm()});
     n.row(k) = ray1.x.cross(ray2.x);

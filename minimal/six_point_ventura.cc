@@ -115,7 +115,7 @@ int Solve6ptVentura(const PreparedMatches& matches, const int* sample, Solutions
   if (!macaulay.Reduce(kLeading, 1, &action)) return 0;
   RealSolutions<20> roots(&action);
   double x[20];
-  const int num_roots = roots.FindX(0.0, false, x, 0);
+  const int num_roots = roots.FindX(0.0, false, system.zero_motion_multiplicity(), x, 0);
   for (int k = 0; k < num_roots; ++k) {
     // The multiple root of an intra-camera sample blurs those near it.
     const auto start = roots.Solution(system.all_intra() ? roots.Refine(x[k]) : x[k]);
