@@ -80,6 +80,7 @@ std::string ProcessorName() {
 std::vector<Problem> MakeProblems(const SolverInfo& solver, const SolverBenchmarkOptions& options,
                                   bool inter) {
   SceneOptions scene;
+  scene.num_cameras = options.num_cameras;
   // Alternating cameras, but where the solver wants its sample from one pair: then a sampler picks
   // it.
   const bool any_sample = solver.sampling == SampleKind::kSpread;
@@ -163,8 +164,9 @@ SolverBenchmarkRow BenchmarkRow(const SolverInfo& solver, const SolverBenchmarkO
   }
   row.solutions = num_solutions / n;
   row.failures = failures / static_cast<double>(n);
-  row.found_truth = found_truth / static_cast<double>(n);
   row.found_direction = found_direction / static_cast<double>(n);
+  row.found_truth =
+      options.rotation_deg == 0.0 ? row.found_direction : found_truth / static_cast<double>(n);
   if (const auto s = ComputeStatistics(rotations)) row.rotation_deg = s->median;
   if (const auto s = ComputeStatistics(directions)) row.translation_dir_deg = s->median;
 
@@ -211,7 +213,7 @@ std::vector<SolverBenchmarkRow> BenchmarkSolver(const SolverInfo& solver,
   const double reference = ReferenceKernelMicroseconds();
   std::vector<SolverBenchmarkRow> rows;
   for (const bool inter : {false, true}) {
-    if (inter && solver.sampling == SampleKind::kOneCamera) continue;
+    if (inter && (solver.sampling == SampleKind::kOneCamera || options.num_cameras < 2)) continue;
     rows.push_back(BenchmarkRow(solver, options, inter));
     if (reference > 0) rows.back().ratio = rows.back().median_us / reference;
   }
@@ -266,7 +268,8 @@ std::string SolverBenchmarkJson(const std::vector<SolverBenchmarkRow>& rows,
                                 const SolverBenchmarkOptions& options, double reference_us) {
   nlohmann::ordered_json report;
   report["format"] = "rigel-benchmark 1";
-  report["options"] = {{"trials", options.trials},
+  report["options"] = {{"num_cameras", options.num_cameras},
+                       {"trials", options.trials},
                        {"rotation_deg", options.rotation_deg},
                        {"random_axis", options.random_axis},
                        {"seed", options.seed}};

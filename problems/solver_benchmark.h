@@ -11,6 +11,7 @@
 namespace rigel {
 
 struct SolverBenchmarkOptions {
+  int num_cameras = 2;        // of the rig, 1 to 4
   int trials = 10000;         // noise-free random problems; >= 1
   double rotation_deg = 1.0;  // about the prior's direction
   bool random_axis = false;   // a random rotation axis instead of body Y (never for planar motion)
@@ -24,14 +25,14 @@ inline constexpr double kFoundDirection = 1e-4;
 
 struct SolverBenchmarkRow {
   std::string solver;
-  std::string matches;     // "intra" or "inter"
-  double mean_us = 0.0;    // of one call: prepared matches to the list of (R, t)
-  double median_us = 0.0;  // over batches of at least 50 us
-  double spread_us = 0.0;  // half the distance of the quartiles
-  double solutions = 0.0;  // mean number
-  double failures = 0.0;   // share of problems without any solution
-  double found_truth = 0.0;
-  double found_direction = 0.0;
+  std::string matches;           // "intra" or "inter"
+  double mean_us = 0.0;          // of one call: prepared matches to the list of (R, t)
+  double median_us = 0.0;        // over batches of at least 50 us
+  double spread_us = 0.0;        // half the distance of the quartiles
+  double solutions = 0.0;        // mean number
+  double failures = 0.0;         // share of problems without any solution
+  double found_truth = 0.0;      // rotation; at rotation_deg = 0 the direction, too
+  double found_direction = 0.0;  // rotation and direction in one solution
   // Medians of the errors of the best solution of a problem, degrees: the bias of a first-order
   // solver.
   double rotation_deg = 0.0;

@@ -13,6 +13,7 @@
 DEFINE_string(output, "",
               "directory that gets the match files 000000.matches, ...; made if missing");
 DEFINE_int32(pairs, 50, "number of frame pairs");
+DEFINE_int32(num_cameras, 2, "cameras of the rig, 1 to 4");
 DEFINE_int32(num_matches, 200, "number of matches of each pair");
 DEFINE_double(noise_px, 0.5, "1-sigma image noise on each coordinate of both views");
 DEFINE_double(rotation_deg, 1, "rotation angle of each pair");
@@ -31,11 +32,11 @@ constexpr char kUsage[] =
     "\n"
     "  rigel_simulate --output=DIR --pairs=50 --motion=random --outlier_share=0.3\n"
     "\n"
-    "Two forward cameras 1 m apart (640 x 480 pixels, focal length 400), each moved by N(0, 0.05 "
-    "m) and\n"
-    "turned by N(0, 0.1 rad) per axis; points uniform in the image of view 1, 5 to 30 m away. The "
-    "files\n"
-    "hold the truth, the noise and the exact gravity, axis and (planar motion) normal.\n";
+    "Two forward cameras 1 m apart (640 x 480 pixels, focal length 400), each moved by\n"
+    "N(0, 0.05 m) and turned by N(0, 0.1 rad) per axis, a third and a fourth above and below "
+    "them;\n"
+    "points uniform in the image of view 1, 5 to 30 m away. The files hold the truth, the noise\n"
+    "and the exact gravity, axis and (planar motion) normal.\n";
 
 int Run() {
   SceneOptions options;
@@ -49,6 +50,7 @@ int Run() {
   if (!ParseRotationAxisPattern(FLAGS_rotation_axis, &options.rotation_axis)) {
     return UsageError("--rotation_axis=" + FLAGS_rotation_axis + ": expected y or random");
   }
+  options.num_cameras = FLAGS_num_cameras;
   options.num_matches = FLAGS_num_matches;
   options.noise_px = FLAGS_noise_px;
   options.rotation_deg = FLAGS_rotation_deg;
