@@ -31,12 +31,13 @@ const Args kEstimationFlags = {"confidence",
                                "use_prior_in_refine"};
 
 std::map<std::string, Args> FlagsOfTools() {
-  return {{"benchmark", {"json", "random_axis", "rotation_deg", "seed", "solvers", "trials"}},
+  return {{"benchmark",
+           {"json", "num_cameras", "random_axis", "rotation_deg", "seed", "solvers", "trials"}},
           {"compare", kEstimationFlags + Args{"by", "csv", "json", "solvers"}},
           {"estimate", kEstimationFlags + Args{"csv", "json", "solver"}},
           {"simulate",
-           {"inter_share", "motion", "noise_px", "num_matches", "outlier_share", "output", "pairs",
-            "rotation_axis", "rotation_deg", "seed"}}};
+           {"inter_share", "motion", "noise_px", "num_cameras", "num_matches", "outlier_share",
+            "output", "pairs", "rotation_axis", "rotation_deg", "seed"}}};
 }
 
 // A run that would succeed but for what is added to it and that the files are not there, nor can be
