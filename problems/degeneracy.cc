@@ -75,11 +75,13 @@ bool MakeProblem(const SolverInfo& solver, Configuration configuration, int inde
              std::cos(heading)};
   if (configuration == Configuration::kForwardMotion) truth.t = Eigen::Vector3d::UnitZ();
   if (configuration == Configuration::kHorizon) truth.t.y() = 0.0;
-  if (configuration == Configuration::kPureTranslation) truth.R.setIdentity();
+  const bool pure_translation = configuration == Configuration::kPureTranslation ||
+                                configuration == Configuration::kPureTranslationInter;
+  if (pure_translation) truth.R.setIdentity();
   if (configuration == Configuration::kNoMotion) truth = Pose();
   if (std::string_view(solver.name) == "2pt-ackermann" &&
       configuration != Configuration::kNoMotion) {
-    const double half = configuration == Configuration::kPureTranslation ? 0.0 : 0.5 * degrees;
+    const double half = pure_translation ? 0.0 : 0.5 * degrees;
     truth.t = -(RotationY(DegToRad(half)) * Eigen::Vector3d::UnitZ());
   }
   const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
@@ -93,6 +95,7 @@ bool MakeProblem(const SolverInfo& solver, Configuration configuration, int inde
     case Configuration::kAxialRig:
     case Configuration::kHorizon:
     case Configuration::kPlanarScene:
+    case Configuration::kPureTranslationInter:
       inter = solver.sampling != SampleKind::kOneCamera;
       break;
     default:
@@ -146,11 +149,19 @@ std::string CellText(const DegeneracyCell& cell, bool no_motion) {
 }  // namespace
 
 const std::vector<Configuration>& AllConfigurations() {
-  static const std::vector<Configuration> all = {
-      Configuration::kInter,           Configuration::kIntra,        Configuration::kIntraThree,
-      Configuration::kPureTranslation, Configuration::kCentralRig,   Configuration::kPanoramicRig,
-      Configuration::kAxialRig,        Configuration::kSingleCamera, Configuration::kForwardMotion,
-      Configuration::kNoMotion,        Configuration::kHorizon,      Configuration::kPlanarScene};
+  static const std::vector<Configuration> all = {Configuration::kInter,
+                                                 Configuration::kIntra,
+                                                 Configuration::kIntraThree,
+                                                 Configuration::kPureTranslation,
+                                                 Configuration::kPureTranslationInter,
+                                                 Configuration::kCentralRig,
+                                                 Configuration::kPanoramicRig,
+                                                 Configuration::kAxialRig,
+                                                 Configuration::kSingleCamera,
+                                                 Configuration::kForwardMotion,
+                                                 Configuration::kNoMotion,
+                                                 Configuration::kHorizon,
+                                                 Configuration::kPlanarScene};
   return all;
 }
 
@@ -163,7 +174,9 @@ const char* ConfigurationName(Configuration configuration) {
     case Configuration::kIntraThree:
       return "intra, 3 cameras";
     case Configuration::kPureTranslation:
-      return "pure translation";
+      return "pure translation, intra";
+    case Configuration::kPureTranslationInter:
+      return "pure translation, inter";
     case Configuration::kCentralRig:
       return "central rig";
     case Configuration::kPanoramicRig:

@@ -11,18 +11,19 @@ namespace rigel {
 
 // A configuration of rig, motion, scene and matches.
 enum class Configuration {
-  kInter,            // between two cameras: the regular case, for comparison
-  kIntra,            // within each of two cameras
-  kIntraThree,       // within each of three cameras
-  kPureTranslation,  // within the cameras, no rotation
-  kCentralRig,       // all camera centres at the body's origin
-  kPanoramicRig,     // all camera centres at one point off the origin
-  kAxialRig,         // three centres on one line, matches between cameras
-  kSingleCamera,     // one camera off the origin
-  kForwardMotion,    // t along +z, within the cameras
-  kNoMotion,         // R = I, t = 0, within the cameras
-  kHorizon,          // all rays perpendicular to the vertical, between cameras
-  kPlanarScene,      // all points on the ground, between cameras
+  kInter,                 // between two cameras: the regular case, for comparison
+  kIntra,                 // within each of two cameras
+  kIntraThree,            // within each of three cameras
+  kPureTranslation,       // within the cameras, no rotation
+  kCentralRig,            // all camera centres at the body's origin
+  kPanoramicRig,          // all camera centres at one point off the origin
+  kAxialRig,              // three centres on one line, matches between cameras
+  kSingleCamera,          // one camera off the origin
+  kForwardMotion,         // t along +z, within the cameras
+  kNoMotion,              // R = I, t = 0, within the cameras
+  kHorizon,               // all rays perpendicular to the vertical, between cameras
+  kPlanarScene,           // all points on the ground, between cameras
+  kPureTranslationInter,  // between cameras, no rotation
 };
 
 const std::vector<Configuration>& AllConfigurations();

@@ -5,8 +5,13 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <Eigen/SVD>
+
+#include "rigel/minimal/seventeen_point_li.h"
+#include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
 namespace {
@@ -58,6 +63,58 @@ TEST(DegeneracyTest, UndeterminedScaleIsFlagged) {
           << solver.name << ", " << ConfigurationName(configuration);
     }
   }
+}
+
+// What the page says of 17pt-li: it needs six matches of each of two cameras ...
+TEST(DegeneracyTest, SeventeenPointsMustNotBeTooUneven) {
+  SceneOptions scene;
+  scene.noise_px = 0.0;
+  scene.rotation_deg = 5.0;
+  const FramePair pair = ScenePair(scene, 1);
+  PreparedMatches matches;
+  matches.Set(pair.rig, pair.matches, Alignment());
+  for (const int first : {9, 11, 12, 14}) {
+    std::vector<int> sample;  // the cameras alternate in the scene
+    for (int k = 0; k < 17; ++k) sample.push_back(k < first ? 2 * k : 2 * k + 1);
+    Solutions solutions;
+    Solve17ptLi(matches, sample.data(), &solutions);
+    double nearest = kPi;
+    for (const Solution& s : solutions) {
+      nearest = std::min(nearest, RotationError(pair.truth->R, s.R));
+    }
+    EXPECT_EQ(nearest < 1e-6, first < 12) << first;
+  }
+}
+
+// ... and between two cameras its system loses a rank at R = I, which more matches do not mend.
+TEST(DegeneracyTest, SystemOfSeventeenPointsLosesARankAtPureTranslation) {
+  const auto rank = [](int num_cameras, double rotation_deg, bool inter) {
+    SceneOptions scene;
+    scene.num_cameras = num_cameras;
+    scene.num_matches = 120;
+    scene.noise_px = 0.0;
+    scene.rotation_deg = rotation_deg;
+    scene.motion = MotionPattern::kRandom;
+    scene.inter_share = inter ? 1.0 : 0.0;
+    const FramePair pair = ScenePair(scene, 1);
+    Eigen::MatrixXd A(pair.matches.size(), 18);
+    for (size_t m = 0; m < pair.matches.size(); ++m) {
+      const Match& match = pair.matches[m];
+      const Ray ray1 = MakeRay(pair.rig.cameras[match.camera1], match.pixel1);
+      const Ray ray2 = MakeRay(pair.rig.cameras[match.camera2], match.pixel2);
+      const Eigen::Matrix3d E = ray2.x * ray1.x.transpose();
+      const Eigen::Matrix3d R =
+          ray2.x * ray1.s.cross(ray1.x).transpose() + ray2.s.cross(ray2.x) * ray1.x.transpose();
+      A.row(m) << E.reshaped().transpose(), R.reshaped().transpose();
+    }
+    const Eigen::VectorXd s = A.jacobiSvd().singularValues();
+    return static_cast<int>((s.array() > 1e-9 * s(0)).count());
+  };
+  EXPECT_EQ(rank(2, 5.0, false), 14);
+  EXPECT_EQ(rank(2, 0.0, false), 14);
+  EXPECT_EQ(rank(2, 5.0, true), 14);
+  EXPECT_EQ(rank(2, 0.0, true), 13);
+  EXPECT_EQ(rank(3, 0.0, true), 17);
 }
 
 }  // namespace
