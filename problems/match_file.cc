@@ -114,19 +114,6 @@ std::string Quote(std::string_view word) {
   return out + "'";
 }
 
-// A path for a message: a line break in a file's name must not break the message.
-std::string PrintablePath(const std::string& path) {
-  std::string out;
-  for (const char c : path) {
-    if (IsControl(c)) {
-      AppendHex(c, &out);
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
 std::string SystemMessage(int error_number) {
   return std::generic_category().message(error_number);
 }
@@ -811,6 +798,18 @@ bool WriteMatchFile(const std::string& path, const FramePair& pair, std::string*
     return false;
   }
   return WriteWholeFile(path, text, error);
+}
+
+std::string PrintablePath(const std::string& path) {
+  std::string out;
+  for (const char c : path) {
+    if (IsControl(c)) {
+      AppendHex(c, &out);
+    } else {
+      out += c;
+    }
+  }
+  return out;
 }
 
 std::vector<std::string> ListMatchFiles(const std::string& comma_separated,

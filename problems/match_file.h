@@ -59,6 +59,9 @@ std::string FormatMatches(const FramePair& pair);
 // other, a sequence name with a blank, ...); nothing is then written. pair.name is not stored.
 bool WriteMatchFile(const std::string& path, const FramePair& pair, std::string* error);
 
+// A path (or a message that holds one) as one line: control characters as \xNN.
+std::string PrintablePath(const std::string& path);
+
 // Expands a comma-separated list of files and directories, in the order given. A directory means
 // the files in it, not below it, whose names end in ".matches", in byte order. A file is taken
 // whatever its name. Empty items are skipped; what is named twice is listed twice. One message

@@ -98,7 +98,7 @@ bool SceneOptions::IsValid(std::string* error) const {
   } else if (inter_share > 0.0 && num_cameras < 2) {
     *error = "inter_share needs two cameras";
   } else if (motion == MotionPattern::kPlanar && rotation_axis != RotationAxisPattern::kY) {
-    *error = "planar motion turns about y: rotation_axis=random contradicts it";
+    *error = "rotation_axis=random contradicts planar motion, which turns about y";
   } else {
     return true;
   }

@@ -1,8 +1,12 @@
 // rigel_simulate: match files of the synthetic scene.
+#include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include <gflags/gflags.h>
 
@@ -10,8 +14,10 @@
 #include "rigel/problems/synthetic.h"
 #include "rigel/tools/tool.h"
 
-DEFINE_string(output, "",
-              "directory that gets the match files 000000.matches, ...; made if missing");
+DEFINE_string(
+    output, "",
+    "directory that gets the match files 000000.matches, ...; made if missing; one with match "
+    "files of other names is refused");
 DEFINE_int32(pairs, 50, "number of frame pairs");
 DEFINE_int32(num_cameras, 2, "cameras of the rig, 1 to 4");
 DEFINE_int32(num_matches, 200, "number of matches of each pair");
@@ -38,6 +44,37 @@ constexpr char kUsage[] =
     "points uniform in the image of view 1, 5 to 30 m away. The files hold the truth, the noise\n"
     "and the exact gravity, axis and (planar motion) normal.\n";
 
+std::string FileName(int k) {
+  char name[32];
+  std::snprintf(name, sizeof(name), "%06d.matches", k);
+  return name;
+}
+
+bool IsOwn(const std::string& name) {
+  int k = -1;
+  std::from_chars(name.data(), name.data() + name.size(), k);
+  return k >= 0 && k < FLAGS_pairs && name == FileName(k);
+}
+
+// Match files that are in `directory` and would be read with those of this run. In byte order.
+std::vector<std::string> OtherMatchFiles(const std::string& directory, std::error_code* code) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> others;
+  fs::directory_iterator entry(directory, *code);
+  for (; !*code && entry != fs::directory_iterator(); entry.increment(*code)) {
+    const std::string name = entry->path().filename().string();
+    const std::string ending = ".matches";
+    std::error_code ignored;
+    if (name.size() > ending.size() &&
+        name.compare(name.size() - ending.size(), ending.size(), ending) == 0 && !IsOwn(name) &&
+        !entry->is_directory(ignored)) {
+      others.push_back(name);
+    }
+  }
+  std::sort(others.begin(), others.end());
+  return others;
+}
+
 int Run() {
   SceneOptions options;
   std::string error;
@@ -62,17 +99,28 @@ int Run() {
   std::error_code code;
   std::filesystem::create_directories(FLAGS_output, code);
   if (code) {
-    std::cerr << FLAGS_output << ": cannot be made: " << code.message() << "\n";
+    std::cerr << PrintablePath(FLAGS_output) << ": cannot be made: " << code.message() << "\n";
+    return kExitFailed;
+  }
+  const std::vector<std::string> others = OtherMatchFiles(FLAGS_output, &code);
+  if (code) {
+    std::cerr << PrintablePath(FLAGS_output) << ": cannot be listed: " << code.message() << "\n";
+    return kExitFailed;
+  }
+  if (!others.empty()) {
+    std::cerr
+        << PrintablePath(FLAGS_output) << ": holds " << PrintablePath(others.front())
+        << (others.size() > 1 ? " and " + std::to_string(others.size() - 1) + " more" : "")
+        << ", which this run does not overwrite and which would be read as if it were of this run; "
+           "empty the directory or name another\n";
     return kExitFailed;
   }
   Progress progress("rigel_simulate", FLAGS_pairs);
   for (int k = 0; k < FLAGS_pairs; ++k) {
-    char name[32];
-    std::snprintf(name, sizeof(name), "%06d.matches", k);
-    const std::string path = (std::filesystem::path(FLAGS_output) / name).string();
+    const std::string path = (std::filesystem::path(FLAGS_output) / FileName(k)).string();
     FramePair pair;
     if (!MakeScenePair(options, k, &pair, &error)) {
-      std::cerr << path << ": " << error << "\n";
+      std::cerr << PrintablePath(path) << ": " << error << "\n";
       return kExitFailed;
     }
     if (!WriteMatchFile(path, pair, &error)) {
@@ -81,7 +129,7 @@ int Run() {
     }
     progress.Step();
   }
-  std::cerr << "wrote " << FLAGS_pairs << " match files to " << FLAGS_output << "\n";
+  std::cerr << "wrote " << FLAGS_pairs << " match files to " << PrintablePath(FLAGS_output) << "\n";
   return kExitDone;
 }
 

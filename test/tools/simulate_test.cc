@@ -140,7 +140,7 @@ TEST_F(SimulateTest, WrongValuesAreUsageErrorsAndLeaveNothing) {
   const Outcome planar =
       RunTool("simulate", {"--output=" + Path("out"), "--motion=planar", "--rotation_axis=random"});
   EXPECT_EXIT_CODE(planar, 2);
-  EXPECT_THAT(planar.err, HasSubstr("planar"));
+  EXPECT_THAT(planar.err, HasSubstr("--rotation_axis=random contradicts planar motion"));
   const Outcome nowhere = RunTool("simulate", {});
   EXPECT_EXIT_CODE(nowhere, 2);
   EXPECT_THAT(nowhere.err, HasSubstr("--output is missing"));
@@ -149,6 +149,26 @@ TEST_F(SimulateTest, WrongValuesAreUsageErrorsAndLeaveNothing) {
 
 TEST_F(SimulateTest, DirectoryIsMadeWithItsParents) {
   EXPECT_EQ(ReadAll(Simulate("a/b/c", {"--pairs=2"})).size(), 2u);
+}
+
+// What is left of another run would be read with the files of this one.
+TEST_F(SimulateTest, DirectoryWithOtherMatchFilesIsRefused) {
+  const std::string output = Simulate("out", {"--pairs=3", "--num_matches=20"});
+  WriteText(output + "/notes.txt", "no match file");
+  std::filesystem::create_directories(output + "/below.matches");
+  Simulate("out", {"--pairs=3", "--num_matches=20"});
+  Simulate("out", {"--pairs=5", "--num_matches=20"});
+  const std::string before = ReadText(output + "/000000.matches");
+  const Outcome fewer =
+      RunTool("simulate", {"--output=" + output, "--pairs=4", "--num_matches=10"});
+  EXPECT_EXIT_CODE(fewer, 1);
+  EXPECT_THAT(Lines(fewer.err),
+              testing::ElementsAre(HasSubstr(output + ": holds 000004.matches,")));
+  EXPECT_EQ(ReadText(output + "/000000.matches"), before);
+  WriteText(output + "/0.matches", "mine");
+  const Outcome mine = RunTool("simulate", {"--output=" + output, "--pairs=4"});
+  EXPECT_EXIT_CODE(mine, 1);
+  EXPECT_THAT(mine.err, HasSubstr("holds 0.matches and 1 more,"));
 }
 
 TEST_F(SimulateTest, DirectoryThatCannotBeMadeFails) {
