@@ -37,10 +37,11 @@ PairResult RunPair(const FramePair& pair, const EstimateOptions& options) {
   result.refine_ms = estimate.refine_ms;
   result.failed = estimate.status != EstimateStatus::kSuccess;
   if (result.failed || !pair.truth.has_value()) return result;
-  // Without a refinement nothing is known of what can be observed; the motion stands as it is.
+  // Without a refinement nothing is known of what can be observed; the direction stands as it is.
   const bool refined = options.refine_motion;
   const bool direction_means = !refined || estimate.refine.translation_observable;
-  const bool scale_means = refined ? estimate.refine.scale_observable : estimate.raw.has_scale;
+  const bool scale_means = refined ? estimate.refine.scale_observable
+                                   : estimate.raw.has_scale && HasInterCameraMatches(pair);
   result.raw = ErrorsOf(*pair.truth, estimate.raw, direction_means, scale_means);
   if (refined) {
     result.refined = ErrorsOf(*pair.truth, estimate.pose, direction_means, scale_means);
@@ -73,6 +74,11 @@ void SelectMatches(MatchUse use, FramePair* pair) {
   const auto end = std::remove_if(pair->matches.begin(), pair->matches.end(),
                                   [intra](const Match& m) { return m.IsIntra() != intra; });
   pair->matches.erase(end, pair->matches.end());
+}
+
+bool HasInterCameraMatches(const FramePair& pair) {
+  return std::any_of(pair.matches.begin(), pair.matches.end(),
+                     [](const Match& m) { return !m.IsIntra(); });
 }
 
 std::vector<std::string> SolversForPairs(const std::vector<FramePair>& pairs) {

@@ -23,6 +23,10 @@ bool ParseMatchUse(std::string_view name, MatchUse* use);  // "all", "intra", "i
 // Keeps the matches of that kind.
 void SelectMatches(MatchUse use, FramePair* pair);
 
+// Without a refinement nothing measures what the matches determine; that the scale is known can
+// then be said only where there are matches between cameras (docs/conventions.md).
+bool HasInterCameraMatches(const FramePair& pair);
+
 struct ComparisonOptions {
   std::vector<std::string> solvers;  // empty: all whose prior every pair has
   MatchUse use = MatchUse::kAll;
@@ -32,7 +36,8 @@ struct ComparisonOptions {
 };
 
 // One motion against the truth. An error that does not exist is left out: the direction where the
-// truth or the estimate has none that means something, the scale where it is not observable.
+// truth or the estimate has none that means something, the scale where it is not observable or,
+// without a refinement, where no match is between cameras.
 struct MotionErrors {
   double rotation = 0.0;  // radians
   std::optional<double> direction;

@@ -115,8 +115,14 @@ std::string ComparisonTable(const std::vector<SolverSummary>& summaries) {
       if (s.sequence == sequence) group.push_back(s);
     }
     if (!text.empty()) text += "\n";
-    text += (sequence == "all" ? "all pairs" : "sequence " + Shortened(sequence, 60)) + ", " +
-            std::to_string(group.front().pairs) + " of them; medians\n" + SequenceTable(group);
+    const int n = group.front().pairs;
+    if (sequence == "all") {
+      text += n == 1 ? "one pair\n" : "all pairs, " + std::to_string(n) + " of them; medians\n";
+    } else {
+      text += "sequence " + Shortened(sequence, 60) + ", " + std::to_string(n) +
+              (n == 1 ? " pair\n" : " pairs; medians\n");
+    }
+    text += SequenceTable(group);
   }
   return text;
 }

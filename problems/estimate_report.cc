@@ -6,6 +6,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/csv.h"
+#include "rigel/problems/match_file.h"
 #include "rigel/problems/report.h"
 #include "rigel/problems/table.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The end of a path that tells the pairs of a directory apart.
+// The end of a path that tells the pairs of a directory apart, on one line whatever it holds.
 std::string ShortName(const std::string& name) {
   const size_t slash = name.find_last_of('/');
   std::string text = slash == std::string::npos ? name : name.substr(slash + 1);
@@ -24,7 +25,7 @@ std::string ShortName(const std::string& name) {
     text.resize(text.size() - ending.size());
   }
   constexpr size_t kWidth = 16;
-  return Shortened(text, kWidth);
+  return Shortened(PrintablePath(text), kWidth);
 }
 
 bool DirectionKnown(const MotionEstimate& e) { return e.refine.translation_observable; }
@@ -54,6 +55,7 @@ std::string EstimateTable(const std::vector<FramePair>& pairs,
       {"pair", "status", "angle", "sd", "direction", "of t", "", "sd", "|t|", "inl", "res", "obs"});
   table.AddHeader({"", "", "[deg]", "[deg]", "x", "y", "z", "[deg]", "[m]", "", "[px]", ""});
   bool any_unobservable = false;
+  bool any_not_asked = false;
   for (size_t k = 0; k < pairs.size(); ++k) {
     const MotionEstimate& e = estimates[k];
     if (!e.HasMotion()) {
@@ -66,8 +68,10 @@ std::string EstimateTable(const std::vector<FramePair>& pairs,
     const bool not_asked = e.status == EstimateStatus::kSuccess && !refined;
     const bool rotation = not_asked || e.refine.rotation_observable;
     const bool direction = not_asked || DirectionKnown(e);
-    const bool scale = not_asked ? e.raw.has_scale : e.refine.scale_observable;
-    any_unobservable = any_unobservable || !direction || !scale;
+    const bool scale =
+        not_asked ? e.raw.has_scale && HasInterCameraMatches(pairs[k]) : e.refine.scale_observable;
+    any_not_asked = any_not_asked || not_asked;
+    any_unobservable = any_unobservable || (!not_asked && (!direction || !scale));
     const Eigen::Vector3d d = e.pose.t.normalized();
     const auto sigma = [&](double radians) {
       return refined && radians >= 0 ? FormatFitted(RadToDeg(radians), 3, 5) : std::string("-");
@@ -89,6 +93,13 @@ std::string EstimateTable(const std::vector<FramePair>& pairs,
         "or not\n"
         "computed. "
         "obs: R rotation, t direction of translation, s scale |t|.\n";
+  }
+  if (any_not_asked) {
+    text +=
+        "\n\"-\": not computed. Without a refinement it is not known what the matches determine: "
+        "the "
+        "direction\nof t may mean nothing; |t| is left out where no match is between two "
+        "cameras.\n";
   }
   for (size_t k = 0; k < pairs.size(); ++k) {
     const MotionEstimate& e = estimates[k];

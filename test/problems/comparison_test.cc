@@ -208,6 +208,26 @@ TEST(Comparison, WithoutRefinementThereIsRawAlone) {
   EXPECT_FALSE(s.refined_rotation_deg || s.bound_rotation_deg);
 }
 
+// Then nothing has measured that the scale is determined; only the kind of the matches speaks for
+// it.
+TEST(Comparison, WithoutRefinementTheScaleNeedsMatchesBetweenCameras) {
+  SceneOptions inter;
+  inter.inter_share = 0.5;
+  const std::vector<FramePair> pairs = {ScenePair(SceneOptions(), 1), ScenePair(inter, 1)};
+  EXPECT_FALSE(HasInterCameraMatches(pairs[0]));
+  EXPECT_TRUE(HasInterCameraMatches(pairs[1]));
+  EstimateOptions options;
+  options.refine_motion = false;
+  const std::vector<PairResult> results = RunSolver(pairs, options, 1, {});
+  for (const PairResult& result : results) {
+    ASSERT_TRUE(result.raw.has_value()) << result.message;
+    EXPECT_TRUE(result.raw->direction.has_value());
+  }
+  EXPECT_FALSE(results[0].raw->scale.has_value());
+  EXPECT_TRUE(results[1].raw->scale.has_value());
+  EXPECT_FALSE(Summarize("4pt-axis", "all", {results[0]}).raw_scale.has_value());
+}
+
 // A truth that stands still has no direction to be held to.
 TEST(Comparison, AStillTruthHasNoDirectionError) {
   SceneOptions scene;
