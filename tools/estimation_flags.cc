@@ -1,14 +1,19 @@
 #include "rigel/tools/estimation_flags.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <sstream>
 
 #include <gflags/gflags.h>
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/match_file.h"
 
-DEFINE_string(matches, "", "match files and directories of *.matches, comma separated");
+DEFINE_string(
+    matches, "",
+    "match files and directories of *.matches, comma separated; a comma in a path cannot be "
+    "passed");
 DEFINE_string(use, "all",
               "which matches are used: all, intra (same camera at both times) or inter");
 DEFINE_string(
@@ -22,10 +27,10 @@ DEFINE_string(prior_noise_axis, "pitch",
 DEFINE_double(prior_sigma_deg, 0,
               "the prior's stated 1-sigma for --use_prior_in_refine; 0: as in the file");
 DEFINE_bool(use_prior_in_refine, false, "weigh the prior by its sigma in the refinement");
-DEFINE_string(
-    refine, "full",
-    "what the refinement frees: none (no refinement), full (rotation and translation), prior "
-    "(the prior is exact), depths (a reference match is exact), prior-depths (both)");
+DEFINE_string(refine, "full",
+              "what the refinement frees: none (no refinement; what is observable is then not "
+              "known), full (rotation and translation), prior "
+              "(the prior is exact), depths (a reference match is exact), prior-depths (both)");
 DEFINE_string(residual, "sampson",
               "sampson (pixels), angular, or algebraic (for comparison: not robust, and with "
               "intra-camera matches and a free scale it collapses to zero motion)");
@@ -40,6 +45,21 @@ DEFINE_uint64(seed, 1, "seed of all random numbers; the same seed gives the same
 DEFINE_int32(threads, 1, "frame pairs estimated at the same time; the results do not depend on it");
 
 namespace rigel {
+namespace {
+
+// As it was typed, more or less; std::to_string(1e308) has 300 digits.
+std::string Text(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+const std::optional<double>& SigmaOf(const MotionPrior& prior, PriorKind kind) {
+  if (kind == PriorKind::kVertical) return prior.gravity_sigma;
+  return kind == PriorKind::kPlanar ? prior.normal_sigma : prior.axis_sigma;
+}
+
+}  // namespace
 
 bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
   const auto wrong = [error](const std::string& flag, const std::string& value,
@@ -62,10 +82,10 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
     return wrong("prior_noise_axis", FLAGS_prior_noise_axis, "pitch, roll or random");
   }
   if (!std::isfinite(FLAGS_prior_noise_deg) || std::abs(FLAGS_prior_noise_deg) > 180) {
-    return wrong("prior_noise_deg", std::to_string(FLAGS_prior_noise_deg), "-180 to 180");
+    return wrong("prior_noise_deg", Text(FLAGS_prior_noise_deg), "-180 to 180");
   }
   if (!(FLAGS_prior_sigma_deg >= 0) || !std::isfinite(FLAGS_prior_sigma_deg)) {
-    return wrong("prior_sigma_deg", std::to_string(FLAGS_prior_sigma_deg), "a number from 0");
+    return wrong("prior_sigma_deg", Text(FLAGS_prior_sigma_deg), "a number from 0");
   }
   options->prior.noise = DegToRad(FLAGS_prior_noise_deg);
   if (FLAGS_prior_sigma_deg > 0) options->prior.sigma = DegToRad(FLAGS_prior_sigma_deg);
@@ -97,26 +117,79 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
   return true;
 }
 
+bool CanRefine(const EstimateOptions& estimate, const std::string& solver, std::string* error) {
+  EstimateOptions options = estimate;
+  options.solver = solver;
+  if (options.IsValid(error)) return true;
+  const SolverInfo* info = FindSolver(solver);
+  if (info != nullptr && info->prior == PriorKind::kNone) {
+    *error = "--refine=" + FLAGS_refine + ": " + solver + " has no prior to hold exact";
+  }
+  return false;
+}
+
 std::vector<FramePair> ReadPairs(const ComparisonOptions& options, bool* all_read) {
   std::vector<std::string> errors;
   const std::vector<std::string> paths = ListMatchFiles(FLAGS_matches, &errors);
   *all_read = errors.empty();
   for (const std::string& error : errors) std::cerr << error << "\n";
   std::vector<FramePair> pairs;
-  for (const std::string& path : paths) {
+  for (size_t k = 0; k < paths.size(); ++k) {
     FramePair pair;
     std::string error;
-    if (!ReadMatchFile(path, &pair, &error) ||
-        !ApplyPriorSource(options.prior, static_cast<int>(pairs.size()), &pair, &error)) {
-      std::cerr << error << "\n";
+    // The number of the path: a file that cannot be read must not change the others' noise.
+    if (!ReadMatchFile(paths[k], &pair, &error) ||
+        !ApplyPriorSource(options.prior, static_cast<int>(k), &pair, &error)) {
+      std::cerr << PrintablePath(error) << "\n";
       *all_read = false;
       continue;
     }
     SelectMatches(options.use, &pair);
     pairs.push_back(std::move(pair));
   }
-  if (pairs.empty()) std::cerr << "nothing to read in " << FLAGS_matches << "\n";
+  if (pairs.empty()) std::cerr << "nothing to read in " << PrintablePath(FLAGS_matches) << "\n";
   return pairs;
+}
+
+void ReportUnweighedPriors(const ComparisonOptions& options,
+                           const std::vector<std::string>& solvers,
+                           const std::vector<FramePair>& pairs) {
+  if (!options.estimate.refine.use_prior || !options.estimate.refine_motion) return;
+  std::vector<PriorKind> kinds;
+  for (const std::string& name : solvers) {
+    const SolverInfo* info = FindSolver(name);
+    if (info != nullptr && info->prior != PriorKind::kNone) kinds.push_back(info->prior);
+  }
+  if (kinds.empty()) {
+    std::cerr << "--use_prior_in_refine: no prior is weighed, the solver uses none\n";
+    return;
+  }
+  // A pair without the prior itself fails, with a message of its own.
+  const auto unweighed = [&](const FramePair& pair) {
+    return std::any_of(kinds.begin(), kinds.end(), [&](PriorKind kind) {
+      return HasPrior(pair.prior, kind) && !SigmaOf(pair.prior, kind).has_value();
+    });
+  };
+  const auto count = std::count_if(pairs.begin(), pairs.end(), unweighed);
+  if (count == 0) return;
+  std::cerr << "--use_prior_in_refine: no sigma of the prior is stated in " << count << " of "
+            << pairs.size() << " pairs, it is not weighed there; state --prior_sigma_deg\n";
+}
+
+std::string FailureMessage(const FramePair& pair, const std::string& solver,
+                           const std::string& message) {
+  // Some messages name the solver themselves.
+  const bool named = message.find(solver) != std::string::npos;
+  std::string text = PrintablePath(pair.name) + ": " + (named ? "" : solver + ": ") + message;
+  const SolverInfo* info = FindSolver(solver);
+  if (info != nullptr && !HasPrior(pair.prior, info->prior)) {
+    const std::string lines = info->prior == PriorKind::kVertical
+                                  ? "'gravity1' and 'gravity2' lines"
+                              : info->prior == PriorKind::kPlanar ? "a 'normal' line"
+                                                                  : "an 'axis' line";
+    text += "; add " + lines + " to the file or use --prior=body";
+  }
+  return text;
 }
 
 }  // namespace rigel

@@ -48,7 +48,11 @@ int Run() {
   if (FLAGS_trials < 1) return UsageError("--trials: expected at least 1");
   if (!std::isfinite(FLAGS_rotation_deg)) return UsageError("--rotation_deg: expected a number");
   std::vector<const SolverInfo*> solvers;
-  for (const std::string& name : SplitCommas(FLAGS_solvers)) {
+  const std::vector<std::string> names = SplitCommas(FLAGS_solvers);
+  if (!FLAGS_solvers.empty() && names.empty()) {
+    return UsageError("--solvers=" + FLAGS_solvers + ": names no solver");
+  }
+  for (const std::string& name : names) {
     const SolverInfo* found = FindSolver(name);
     for (const SolverInfo& peer : OpenGvPeers()) {
       if (name == peer.name) found = &peer;

@@ -6,11 +6,10 @@
 
 #include <gflags/gflags.h>
 
+#include "rigel/problems/match_file.h"
 #include "rigel/problems/report.h"
 #include "rigel/tools/estimation_flags.h"
 #include "rigel/tools/tool.h"
-
-DECLARE_string(refine);
 
 DEFINE_string(solvers, "", "names of solvers, comma separated; all that the priors allow if empty");
 DEFINE_string(by, "", "sequence: one more row for each sequence of the files");
@@ -29,29 +28,25 @@ constexpr char kUsage[] =
     "median\n"
     "errors: rotation, direction of translation and scale, where these are observable; beside "
     "them,\n"
-    "where the files state the image noise, the Cramer-Rao bound that no estimate can beat.\n";
-
-// Some forms of refinement hold the solver's prior exact; not every solver has one.
-bool CanRefine(const ComparisonOptions& options, const std::string& solver) {
-  EstimateOptions estimate = options.estimate;
-  estimate.solver = solver;
-  std::string error;
-  return estimate.IsValid(&error);
-}
+    "where the files state the image noise, the Cramer-Rao bound that no estimate can beat. With\n"
+    "--refine=none nothing says what is observable: the direction is shown of every pair, the "
+    "scale\n"
+    "of pairs with matches between cameras.\n";
 
 int Run() {
   ComparisonOptions options;
   std::string error;
   if (!OptionsFromFlags(&options, &error)) return UsageError(error);
   options.solvers = SplitCommas(FLAGS_solvers);
+  if (!FLAGS_solvers.empty() && options.solvers.empty()) {
+    return UsageError("--solvers=" + FLAGS_solvers + ": names no solver");
+  }
   for (const std::string& name : options.solvers) {
     if (FindSolver(name) == nullptr) {
       return UsageError("--solvers: there is no solver '" + name + "'; expected some of " +
                         SolverNames());
     }
-    if (!CanRefine(options, name)) {
-      return UsageError("--refine=" + FLAGS_refine + ": " + name + " has no prior to hold exact");
-    }
+    if (!CanRefine(options.estimate, name, &error)) return UsageError(error);
     if (std::count(options.solvers.begin(), options.solvers.end(), name) > 1) {
       return UsageError("--solvers: '" + name + "' is named twice");
     }
@@ -68,19 +63,26 @@ int Run() {
   const auto no_truth = std::stable_partition(
       pairs.begin(), pairs.end(), [](const FramePair& pair) { return pair.truth.has_value(); });
   for (auto it = no_truth; it != pairs.end(); ++it) {
-    std::cerr << it->name << ": has no truth line, nothing to compare with\n";
+    std::cerr << PrintablePath(it->name) << ": has no truth line, nothing to compare with\n";
     ok = false;
   }
   pairs.erase(no_truth, pairs.end());
   if (pairs.empty()) return kExitFailed;
   if (options.solvers.empty()) {
     for (const std::string& name : SolversForPairs(pairs)) {
-      if (CanRefine(options, name)) options.solvers.push_back(name);
+      if (CanRefine(options.estimate, name, &error)) options.solvers.push_back(name);
     }
   }
   if (options.solvers.empty()) {
     std::cerr << "no solver's prior is in every file; try --prior=body\n";
     return kExitFailed;
+  }
+
+  ReportUnweighedPriors(options, options.solvers, pairs);
+  const bool any_sequence = std::any_of(
+      pairs.begin(), pairs.end(), [](const FramePair& pair) { return !pair.sequence.empty(); });
+  if (FLAGS_by == "sequence" && !any_sequence) {
+    std::cerr << "--by=sequence: no file names a sequence\n";
   }
 
   std::vector<SolverSummary> summaries;
@@ -102,8 +104,9 @@ int Run() {
     all_results.emplace_back(name, std::move(results));
   }
   for (const auto& [name, results] : all_results) {
-    for (const PairResult& r : results) {
-      if (r.failed) std::cerr << r.name << ": " << name << ": " << r.message << "\n";
+    for (size_t k = 0; k < results.size(); ++k) {
+      if (!results[k].failed) continue;
+      std::cerr << FailureMessage(pairs[k], name, results[k].message) << "\n";
     }
   }
 

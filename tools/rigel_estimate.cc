@@ -20,12 +20,13 @@ constexpr char kUsage[] =
     "\n"
     "  rigel_estimate --matches=DIR --solver=4pt-axis --prior=body --json=motions.json\n"
     "\n"
-    "RANSAC with a minimal solver makes hypotheses, a refinement makes them accurate. The table "
-    "gives\n"
-    "the rotation angle, the direction of translation and |t| with their standard deviations, and "
-    "\"-\"\n"
-    "for what the matches do not determine. The JSON and CSV give the motions in full, raw and "
-    "refined.\n";
+    "RANSAC with a minimal solver makes hypotheses, a refinement makes them accurate. The table\n"
+    "gives the rotation angle, the direction of translation and |t| with their standard "
+    "deviations,\n"
+    "and \"-\" for what the matches do not determine. With --refine=none nothing says what they\n"
+    "determine: the direction is shown as it is, |t| only where there are matches between "
+    "cameras.\n"
+    "The JSON and CSV give the motions in full, raw and refined.\n";
 
 int Run() {
   ComparisonOptions options;
@@ -36,7 +37,7 @@ int Run() {
   if (FindSolver(FLAGS_solver) == nullptr) {
     return UsageError("--solver=" + FLAGS_solver + ": expected one of " + SolverNames());
   }
-  if (!estimate.IsValid(&error)) return UsageError(error);
+  if (!CanRefine(estimate, FLAGS_solver, &error)) return UsageError(error);
   if (FLAGS_json == "-" && FLAGS_csv == "-") {
     return UsageError("--csv=-: stdout has the JSON already; name a file for one of them");
   }
@@ -44,6 +45,7 @@ int Run() {
   bool ok = true;
   const std::vector<FramePair> pairs = ReadPairs(options, &ok);
   if (pairs.empty()) return kExitFailed;
+  ReportUnweighedPriors(options, {FLAGS_solver}, pairs);
   std::vector<MotionEstimate> estimates(pairs.size());
   {
     Progress progress(FLAGS_solver, static_cast<int>(pairs.size()));
@@ -56,7 +58,7 @@ int Run() {
   }
   for (size_t k = 0; k < pairs.size(); ++k) {
     if (estimates[k].status != EstimateStatus::kSuccess) {
-      std::cerr << pairs[k].name << ": " << estimates[k].message << "\n";
+      std::cerr << FailureMessage(pairs[k], FLAGS_solver, estimates[k].message) << "\n";
     }
   }
 

@@ -121,6 +121,12 @@ TEST_F(CompareTest, WithoutRefinementThereIsNothingRefined) {
   EXPECT_FALSE(entry.contains("bound"));
   EXPECT_TRUE(entry.contains("raw"));
   EXPECT_EQ(entry["failures"], 0);
+  EXPECT_TRUE(entry["raw"].contains("scale"));
+  // Matches within the cameras do not say whether they determine it.
+  const Json intra =
+      Entry({"--matches=" + matches, "--solvers=4pt", "--refine=none", "--use=intra"});
+  EXPECT_FALSE(intra["raw"].contains("scale"));
+  EXPECT_TRUE(intra["raw"].contains("translation_dir_deg"));
 }
 
 TEST_F(CompareTest, ScaleThatIsNotObservableIsLeftOut) {
@@ -156,7 +162,26 @@ TEST_F(CompareTest, BySequenceAddsAnEntryForEachSequence) {
   const Outcome table = RunTool("compare", args + Args{"--by=sequence"});
   EXPECT_THAT(table.out, AllOf(HasSubstr("all pairs, 5 of them"), HasSubstr("sequence a, 1"),
                                HasSubstr("sequence b, 2")));
+  EXPECT_THAT(table.out, HasSubstr("sequence a, 1 pair\n"));
+  EXPECT_THAT(table.err, IsEmpty());
   EXPECT_EXIT_CODE(RunTool("compare", args + Args{"--by=camera"}), 2);
+}
+
+TEST_F(CompareTest, BySequenceSaysThatNoFileNamesOne) {
+  const std::string matches = Simulate("in", {"--pairs=1", "--num_matches=40"});
+  const Outcome run =
+      RunTool("compare", {"--matches=" + matches, "--solvers=4pt", "--by=sequence"});
+  EXPECT_EXIT_CODE(run, 0);
+  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("no file names a sequence")));
+  EXPECT_THAT(run.out, StartsWith("one pair\n"));
+}
+
+TEST_F(CompareTest, PriorThatCannotBeWeighedIsToldOnceForAllSolvers) {
+  const std::string matches = Simulate("in", {"--pairs=2", "--num_matches=40"});
+  const Outcome run = RunTool("compare", {"--matches=" + matches, "--solvers=4pt,4pt-axis,17pt-li",
+                                          "--use_prior_in_refine"});
+  EXPECT_EXIT_CODE(run, 0);
+  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("in 2 of 2 pairs")));
 }
 
 TEST_F(CompareTest, CsvAgreesWithTheJson) {
@@ -264,7 +289,8 @@ TEST_F(CompareTest, PairWithoutThePriorOfItsSolverIsAFailureAndNoError) {
       RunTool("compare", {"--matches=" + matches, "--solvers=4pt-axis", "--json=-"});
   EXPECT_EXIT_CODE(run, 0);
   EXPECT_THAT(Lines(run.err),
-              ElementsAre(AllOf(HasSubstr("000001.matches: 4pt-axis: "), HasSubstr("no axis"))));
+              ElementsAre(AllOf(HasSubstr("000001.matches: 4pt-axis: the prior has no axis"),
+                                HasSubstr("--prior=body"))));
   const Json entry = ParseReport(run.out)["results"][0];
   EXPECT_EQ(entry["pairs"], 3);
   EXPECT_EQ(entry["failures"], 1);

@@ -1,5 +1,8 @@
 // rigel_estimate: what it says of pairs of all kinds.
 #include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <sstream>
 
 #include "rigel/test/tools/tools_test.h"
 
@@ -88,6 +91,72 @@ TEST_F(EstimateTest, WithoutRefinementOnlyTheRawMotion) {
   EXPECT_THAT(Keys(pair), UnorderedElementsAre("pair", "status", "matches", "inliers", "iterations",
                                                "time_ms", "raw"));
   EXPECT_EQ(pair["status"], "ok");
+}
+
+// The cells of the first row of a table, whose names hold no blank.
+std::vector<std::string> FirstRow(const std::string& table) {
+  const std::vector<std::string> lines = Lines(table);
+  std::istringstream row(lines.size() > 3 ? lines[3] : "");
+  return {std::istream_iterator<std::string>(row), std::istream_iterator<std::string>()};
+}
+
+TEST_F(EstimateTest, WithoutRefinementTheLengthNeedsMatchesBetweenCameras) {
+  constexpr size_t kLength = 8;  // pair status angle sd x y z sd |t|
+  const Args raw = {"--refine=none", "--matches=" + Simulate("intra", {"--pairs=1"})};
+  const Outcome intra = RunTool("estimate", raw);
+  ASSERT_THAT(FirstRow(intra.out), SizeIs(12)) << intra.out;
+  EXPECT_EQ(FirstRow(intra.out)[kLength], "-");
+  EXPECT_NE(FirstRow(intra.out)[kLength - 2], "-");  // z of the direction
+  EXPECT_THAT(intra.out, HasSubstr("not computed"));
+  EXPECT_THAT(intra.out, Not(HasSubstr("not observable")));
+
+  const std::string matches = Simulate("inter", {"--pairs=1", "--inter_share=0.5"});
+  const Outcome inter = RunTool("estimate", {"--refine=none", "--matches=" + matches});
+  ASSERT_THAT(FirstRow(inter.out), SizeIs(12)) << inter.out;
+  EXPECT_NEAR(std::atof(FirstRow(inter.out)[kLength].c_str()), 1.0, 0.1);
+  EXPECT_THAT(RunTool("estimate", {"--matches=" + matches}).out, Not(HasSubstr("not computed")));
+}
+
+TEST_F(EstimateTest, LineBreakInAFileNameBreaksNeitherTableNorMessages) {
+  WriteText(Path("in/a\nb.matches"), kHeader + std::string("matches 0\n"));
+  const Outcome run = RunTool("estimate", {"--matches=" + Path("in")});
+  EXPECT_EXIT_CODE(run, 0);
+  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("a\\x0ab.matches: ")));
+  EXPECT_THAT(Lines(run.out), testing::Contains(StartsWith("a\\x0ab invalid input")));
+  const Outcome prior = RunTool("estimate", {"--matches=" + Path("in"), "--prior=truth"});
+  EXPECT_THAT(Lines(prior.err)[0], HasSubstr("a\\x0ab.matches: no truth"));
+}
+
+TEST_F(EstimateTest, PriorThatCannotBeWeighedIsToldOnce) {
+  const std::string matches = Simulate("in", {"--pairs=3", "--num_matches=40"});
+  const std::string text = ReadText(matches + "/000000.matches");
+  WriteText(matches + "/000000.matches",
+            "format rigmatch 1\naxis_sigma_deg 0.1\n" + text.substr(text.find('\n') + 1));
+  const Args args = {"--matches=" + matches, "--use_prior_in_refine"};
+  const auto errors = [&](const Args& more) {
+    const Outcome run = RunTool("estimate", args + more);
+    EXPECT_EXIT_CODE(run, 0);
+    return Lines(run.err);
+  };
+  EXPECT_THAT(errors({}), ElementsAre(AllOf(StartsWith("--use_prior_in_refine: "),
+                                            HasSubstr("in 2 of 3 pairs"))));
+  EXPECT_THAT(errors({"--solver=4pt"}), ElementsAre(HasSubstr("in 3 of 3 pairs")));
+  EXPECT_THAT(errors({"--solver=17pt-li"}), ElementsAre(StartsWith("--use_prior_in_refine: ")));
+  EXPECT_THAT(errors({"--prior_sigma_deg=0.1"}), IsEmpty());
+  EXPECT_THAT(errors({"--refine=none"}), IsEmpty());  // nothing to weigh it in
+  EXPECT_THAT(errors({"--nouse_prior_in_refine"}), IsEmpty());
+}
+
+TEST_F(EstimateTest, UnreadableFileLeavesThePriorNoiseOfTheOthers) {
+  const std::string matches = Simulate("in", {"--pairs=8", "--num_matches=40"});
+  const Args args = {"--matches=" + matches, "--prior_noise_deg=1", "--refine=none", "--json=-"};
+  const Json all = WithoutTimes(ParseReport(RunTool("estimate", args).out))["pairs"];
+  WriteText(matches + "/000000.matches", "rubbish\n");
+  const Outcome run = RunTool("estimate", args);
+  EXPECT_EXIT_CODE(run, 1);
+  const Json others = WithoutTimes(ParseReport(run.out))["pairs"];
+  ASSERT_EQ(others.size(), 7u);
+  for (size_t k = 0; k < others.size(); ++k) EXPECT_EQ(others[k], all[k + 1]) << k;
 }
 
 TEST_F(EstimateTest, ScaleOfIntraMatchesIsNotReportedAsIfItWereKnown) {
@@ -182,12 +251,20 @@ TEST_F(EstimateTest, DegenerateMatchesEndInAStatusWithEverySolver) {
 TEST_F(EstimateTest, PairWithoutThePriorOfItsSolverFailsWithAMessage) {
   const std::string directory = Simulate("in", {"--pairs=1", "--num_matches=40"});
   for (const auto& [solver, words] : std::vector<std::pair<std::string, std::string>>{
-           {"3pt", "no normal"}, {"3pt-approx", "no normal"}}) {
+           {"3pt", "no normal; add a 'normal' line"},
+           {"3pt-approx", "no normal; add a 'normal' line"}}) {
     const Outcome run = RunTool("estimate", {"--matches=" + directory, "--solver=" + solver});
     EXPECT_EXIT_CODE(run, 0);
     EXPECT_THAT(Lines(run.err), ElementsAre(AllOf(HasSubstr("000000.matches: "), HasSubstr(solver),
-                                                  HasSubstr(words))));
+                                                  HasSubstr(words), HasSubstr("--prior=body"))));
     EXPECT_THAT(run.out, HasSubstr("invalid input"));
+  }
+  // The other remedies.
+  WriteText(Path("none/a.matches"), kHeader + std::string("matches 0\n"));
+  for (const auto& [solver, words] : std::vector<std::pair<std::string, std::string>>{
+           {"4pt", "add 'gravity1' and 'gravity2' lines"}, {"4pt-axis", "add an 'axis' line"}}) {
+    const Outcome run = RunTool("estimate", {"--matches=" + Path("none"), "--solver=" + solver});
+    EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr(words)));
   }
   // The body's axes stand in.
   EXPECT_EQ(OnlyPair({"--matches=" + directory, "--solver=3pt", "--prior=body"})["status"], "ok");

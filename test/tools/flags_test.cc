@@ -124,7 +124,8 @@ TEST(Flags, ValueOutOfRangeIsAUsageErrorBeforeAnyFileIsRead) {
         {"--prior=imu", "file, body or truth"},
         {"--prior_noise_axis=yaw", "pitch, roll or random"},
         {"--prior_noise_deg=nan", "prior_noise_deg"},
-        {"--prior_noise_deg=181", "prior_noise_deg"},
+        {"--prior_noise_deg=181", "prior_noise_deg=181: expected -180 to 180"},
+        {"--prior_noise_deg=1e308", "prior_noise_deg=1e+308: expected"},
         {"--prior_sigma_deg=-1", "prior_sigma_deg"},
         {"--prior_sigma_deg=inf", "prior_sigma_deg"},
         {"--refine=most", "none, full, prior, depths or prior-depths"},
@@ -150,6 +151,19 @@ TEST(Flags, UnknownSolverIsAUsageErrorThatListsTheSolvers) {
   ExpectUsageError("estimate", {"--solver=5pt"}, "--solver=5pt");
   ExpectUsageError("estimate", {"--solver=5pt"}, "4pt-axis-approx-polished");
   ExpectUsageError("estimate", {"--solver="}, "4pt-axis");
+}
+
+TEST(Flags, ListOfNoSolverIsAUsageErrorAndNotAllOfThem) {
+  ExpectUsageError("compare", {"--solvers=,"}, "--solvers=,: names no solver");
+  ExpectUsageError("benchmark", {"--solvers=,,"}, "--solvers=,,: names no solver");
+}
+
+TEST(Flags, ExactPriorOfASolverWithoutOneIsAUsageErrorInTermsOfTheFlags) {
+  for (const char* form : {"--refine=prior", "--refine=prior-depths"}) {
+    const std::string what = form + std::string(": 17pt-li has no prior to hold exact");
+    ExpectUsageError("estimate", {"--solver=17pt-li", form}, what);
+    ExpectUsageError("compare", {"--solvers=4pt,17pt-li", form}, what);
+  }
 }
 
 TEST(Flags, UnwritableOutputFileFails) {
