@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+
 #include "rigel/core/angles.h"
 #include "rigel/core/metrics.h"
 #include "rigel/problems/parallel.h"
@@ -22,12 +24,38 @@ MotionErrors ErrorsOf(const Pose& truth, const Pose& pose, bool direction_means,
   return errors;
 }
 
-PairResult RunPair(const FramePair& pair, const EstimateOptions& options) {
+// The quantile of a chi-square distribution over its degrees of freedom (Wilson and Hilferty 1931),
+// at `z` standard deviations of the normal distribution.
+double ChiSquareQuantileRatio(double dof, double z) {
+  const double v = 2.0 / (9.0 * dof);
+  const double root = 1.0 - v + z * std::sqrt(v);
+  return root * root * root;
+}
+
+// Only of the forms that take nothing as exact: the others' covariance leaves something out.
+void FillNees(const Pose& truth, const MotionEstimate& estimate, RefineForm form,
+              PairResult* result) {
+  const bool complete = form == RefineForm::kFull || form == RefineForm::kBundle;
+  if (!complete || !estimate.refine.covariance || !estimate.refine.translation_observable) return;
+  const MotionBasis basis = FullBasis(estimate.pose, estimate.refine.scale_free);
+  Eigen::Matrix<double, 6, 1> error;
+  error.head<3>() = LogSO3(truth.R * estimate.pose.R.transpose());
+  const double norm = estimate.refine.scale_free ? truth.t.norm() : estimate.pose.t.norm();
+  error.tail<3>() = norm * truth.t.normalized() - estimate.pose.t;
+  const Eigen::MatrixXd covariance = basis.transpose() * *estimate.refine.covariance * basis;
+  const Eigen::VectorXd free = basis.transpose() * error;
+  const double nees = free.dot(covariance.ldlt().solve(free));
+  if (!std::isfinite(nees)) return;
+  result->nees = nees;
+  result->nees_dof = static_cast<int>(basis.cols());
+}
+
+PairResult RunPair(const FramePair& pair, const EstimateOptions& options, bool use_stated_noise) {
   PairResult result;
   result.name = pair.name;
   result.sequence = pair.sequence;
   EstimateOptions pair_options = options;
-  if (pair.noise_px.has_value()) pair_options.refine.noise_px = pair.noise_px;
+  if (use_stated_noise && pair.noise_px.has_value()) pair_options.refine.noise_px = pair.noise_px;
   const MotionEstimate estimate = EstimateMotion(pair_options, pair);
   result.status = estimate.status;
   result.message = estimate.message;
@@ -49,6 +77,7 @@ PairResult RunPair(const FramePair& pair, const EstimateOptions& options) {
     bound_options.prior_kind = FindSolver(options.solver)->prior;
     bound_options.threshold_px = options.ransac.threshold_px;
     result.bound = ComputeCramerRaoBound(bound_options, pair);
+    FillNees(*pair.truth, estimate, options.refine.form, &result);
   }
   return result;
 }
@@ -94,10 +123,10 @@ std::vector<std::string> SolversForPairs(const std::vector<FramePair>& pairs) {
 
 std::vector<PairResult> RunSolver(const std::vector<FramePair>& pairs,
                                   const EstimateOptions& options, int num_threads,
-                                  const std::function<void()>& progress) {
+                                  const std::function<void()>& progress, bool use_stated_noise) {
   std::vector<PairResult> results(pairs.size());
   ParallelFor(static_cast<int>(pairs.size()), num_threads, [&](int k) {
-    results[k] = RunPair(pairs[k], options);
+    results[k] = RunPair(pairs[k], options, use_stated_noise);
     if (progress) progress();
   });
   return results;
@@ -111,6 +140,8 @@ SolverSummary Summarize(const std::string& solver, const std::string& sequence,
   std::vector<double> rotation[2], direction[2], scale[2];
   std::vector<double> bound_rotation, bound_direction;
   std::vector<double> inlier_ratio, iterations, ransac_ms, refine_ms;
+  double nees = 0.0, nees_dof = 0.0;
+  int nees_pairs = 0;
   for (const PairResult& result : results) {
     ++summary.pairs;
     if (result.failed) {
@@ -128,6 +159,11 @@ SolverSummary Summarize(const std::string& solver, const std::string& sequence,
     if (result.bound) {
       bound_rotation.push_back(RadToDeg(result.bound->rotation));
       bound_direction.push_back(RadToDeg(result.bound->direction));
+    }
+    if (result.nees) {
+      nees += *result.nees;
+      nees_dof += result.nees_dof;
+      ++nees_pairs;
     }
     inlier_ratio.push_back(result.inlier_ratio);
     iterations.push_back(result.iterations);
@@ -149,6 +185,13 @@ SolverSummary Summarize(const std::string& solver, const std::string& sequence,
   if (bound_rotation.size() == solved) {
     summary.bound_rotation_deg = ComputeStatistics(bound_rotation);
     summary.bound_direction_deg = ComputeStatistics(bound_direction);
+  }
+  if (2 * static_cast<size_t>(nees_pairs) > solved) {
+    constexpr double kHalfPercent = 2.5758;  // of the normal distribution is beyond
+    summary.nees_ratio = nees / nees_dof;
+    summary.nees_dof = nees_dof / nees_pairs;
+    summary.nees_low = ChiSquareQuantileRatio(nees_dof, -kHalfPercent);
+    summary.nees_high = ChiSquareQuantileRatio(nees_dof, kHalfPercent);
   }
   summary.inlier_ratio = ComputeStatistics(inlier_ratio);
   summary.iterations = ComputeStatistics(iterations);

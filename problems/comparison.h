@@ -31,7 +31,8 @@ struct ComparisonOptions {
   std::vector<std::string> solvers;  // empty: all whose prior every pair has
   MatchUse use = MatchUse::kAll;
   PriorSourceOptions prior;
-  EstimateOptions estimate;  // its solver is replaced by each of `solvers`
+  EstimateOptions estimate;      // its solver is replaced by each of `solvers`
+  bool use_stated_noise = true;  // the noise that the files state
   int num_threads = 1;
 };
 
@@ -51,6 +52,10 @@ struct PairResult {
   std::string message;
   std::optional<MotionErrors> raw, refined;
   std::optional<CramerRaoBound> bound;
+  // Normalized estimation error squared: the refined error in units of its stated covariance. Its
+  // mean over many pairs is the degrees of freedom if the covariance is right.
+  std::optional<double> nees;
+  int nees_dof = 0;  // 6, or 5 where |t| was held
   double inlier_ratio = 0.0;
   int iterations = 0;
   double ransac_ms = 0.0;
@@ -68,10 +73,12 @@ std::vector<std::string> SolversForPairs(const std::vector<FramePair>& pairs);
 
 // Runs one solver over all pairs (already selected and with priors applied). Results in input order
 // and the same for any number of threads, but for the times. `progress` (may be empty) is called
-// after each pair, from any thread.
+// after each pair, from any thread. The noise that a pair states is the refinement's, unless
+// `use_stated_noise` is false.
 std::vector<PairResult> RunSolver(const std::vector<FramePair>& pairs,
                                   const EstimateOptions& options, int num_threads,
-                                  const std::function<void()>& progress);
+                                  const std::function<void()>& progress,
+                                  bool use_stated_noise = true);
 
 // What a report says of one solver over a group of pairs (docs/formats.md).
 struct SolverSummary {
@@ -83,6 +90,10 @@ struct SolverSummary {
   std::optional<Statistics> raw_rotation_deg, raw_direction_deg, raw_scale;
   std::optional<Statistics> refined_rotation_deg, refined_direction_deg, refined_scale;
   std::optional<Statistics> bound_rotation_deg, bound_direction_deg;
+  // Mean NEES over mean degrees of freedom, and the 99 percent interval of that ratio for a right
+  // covariance.
+  std::optional<double> nees_ratio;
+  double nees_dof = 0.0, nees_low = 0.0, nees_high = 0.0;
   std::optional<Statistics> inlier_ratio, iterations, ransac_ms, refine_ms;
 };
 

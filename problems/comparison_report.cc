@@ -51,6 +51,12 @@ Json SummaryJson(const SolverSummary& s) {
   Put("rotation_deg", s.bound_rotation_deg, &bound);
   Put("translation_dir_deg", s.bound_direction_deg, &bound);
   PutGroup("bound", bound, &entry);
+  if (s.nees_ratio) {
+    entry["nees"] = {{"ratio", *s.nees_ratio},
+                     {"degrees_of_freedom", s.nees_dof},
+                     {"low", s.nees_low},
+                     {"high", s.nees_high}};
+  }
   Put("inlier_ratio", s.inlier_ratio, &entry);
   Put("iterations", s.iterations, &entry);
   Put("ransac", s.ransac_ms, &time);
@@ -87,11 +93,15 @@ std::string SequenceTable(const std::vector<SolverSummary>& summaries) {
   std::string text = table.Format();
   if (any_bound) {
     Table efficiency;
-    efficiency.AddHeader({"efficiency: RMS error / RMS bound", "rotation", "direction"});
+    efficiency.AddHeader({"efficiency: RMS error / RMS bound", "rotation", "direction",
+                          "NEES / dof", "dof", "99 % of right ones"});
     for (const SolverSummary& s : summaries) {
-      efficiency.AddRow({s.solver,
-                         FormatNumber(Ratio(s.refined_rotation_deg, s.bound_rotation_deg), 3),
-                         FormatNumber(Ratio(s.refined_direction_deg, s.bound_direction_deg), 3)});
+      efficiency.AddRow(
+          {s.solver, FormatNumber(Ratio(s.refined_rotation_deg, s.bound_rotation_deg), 3),
+           FormatNumber(Ratio(s.refined_direction_deg, s.bound_direction_deg), 3),
+           FormatNumber(s.nees_ratio, 3), s.nees_ratio ? FormatNumber(s.nees_dof, 2) : "-",
+           s.nees_ratio ? FormatNumber(s.nees_low, 2) + " to " + FormatNumber(s.nees_high, 2)
+                        : "-"});
     }
     text += "\n" + efficiency.Format();
   }

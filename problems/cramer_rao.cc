@@ -1,5 +1,6 @@
 #include "rigel/problems/cramer_rao.h"
 
+#include <algorithm>
 #include <string>
 
 #include "rigel/minimal/alignment.h"
@@ -18,8 +19,9 @@ std::optional<CramerRaoBound> ComputeCramerRaoBound(const RefineOptions& options
   std::vector<double> errors;
   matches.SquaredErrors(truth, &errors);
   std::vector<char> mask(errors.size());
+  const double gate = std::max(options.threshold_px, kGateSigmas * *pair.noise_px);
   for (size_t k = 0; k < errors.size(); ++k) {
-    mask[k] = errors[k] < options.threshold_px * options.threshold_px ? 1 : 0;
+    mask[k] = errors[k] < gate * gate ? 1 : 0;
   }
   Matrix6d information =
       SampsonInformation(matches, mask, truth) / (*pair.noise_px * *pair.noise_px);
@@ -33,32 +35,16 @@ std::optional<CramerRaoBound> ComputeCramerRaoBound(const RefineOptions& options
 
   CramerRaoBound bound;
   bound.relative_scale = RelativeScaleSigma(information, truth);
-  const bool scale_free = bound.relative_scale <= kScaleObservableRatio;
+  const bool scale_free =
+      options.scale == ScaleMode::kFree ||
+      (options.scale == ScaleMode::kAuto && bound.relative_scale <= kScaleObservableRatio);
   MotionBasis basis = FullBasis(truth, scale_free);
   const bool prior_exact =
       options.form == RefineForm::kPrior || options.form == RefineForm::kPriorDepths;
   if (prior_exact) {
-    // The angle about the known direction, and t: all of it, in the plane, or without its length.
     Alignment alignment;
     if (!MakeAlignment(pair.prior, options.prior_kind, &alignment, &error)) return std::nullopt;
-    const bool planar = options.prior_kind == PriorKind::kPlanar;
-    const Eigen::Vector3d axis = alignment.AxisInFrame2();
-    const Eigen::Vector3d direction = truth.t.normalized();
-    Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 3> t_basis;
-    if (planar) {
-      if (scale_free) {
-        t_basis = TangentBasis(axis);
-      } else {
-        t_basis = axis.cross(direction);
-      }
-    } else if (scale_free) {
-      t_basis = Eigen::Matrix3d::Identity();
-    } else {
-      t_basis = TangentBasis(direction);
-    }
-    basis.setZero(6, 1 + t_basis.cols());
-    basis.block<3, 1>(0, 0) = axis;
-    basis.block(3, 1, 3, t_basis.cols()) = t_basis;
+    basis = PriorBasis(truth, alignment, scale_free);
   }
   if (!CovarianceOfBasis(information, basis, &bound.covariance)) return std::nullopt;
   bound.rotation = RotationSigma(bound.covariance);

@@ -53,6 +53,7 @@ bool ApplyPriorSource(const PriorSourceOptions& options, int index, FramePair* p
       prior.axis = axis;
       prior.normal = axis;
       if (truth.t.norm() > 0) {
+        if (options.true_distance) prior.distance = truth.t.norm();
         const Eigen::Vector3d direction = truth.t.normalized();
         const Eigen::Vector3d across = axis - direction * direction.dot(axis);
         // An axis along t says nothing of the plane; any normal is as near as any other.

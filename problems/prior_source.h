@@ -27,6 +27,8 @@ struct PriorSourceOptions {
   PriorNoiseAxis noise_axis = PriorNoiseAxis::kPitch;
   // Stated 1-sigma of all directions, radians; replaces what the pair says.
   std::optional<double> sigma;
+  // With kTruth the true |t|, too, as the distance (without a sigma).
+  bool true_distance = false;
   uint64_t seed = 1;
 };
 

@@ -6,6 +6,12 @@
 namespace rigel {
 
 PriorResiduals::PriorResiduals(const MotionPrior& prior, PriorKind kind, const Pose& start) {
+  with_distance_ = prior.distance.has_value() && prior.distance_sigma > 0;
+  if (with_distance_) {
+    distance_ = *prior.distance;
+    distance_weight_ = 1.0 / prior.distance_sigma;
+    size_ = 1;
+  }
   if (!HasPrior(prior, kind)) return;
   const double angle = std::max(LogSO3(start.R).norm(), kMinAxisAngle);
   const double chord = 2.0 * std::sin(0.5 * std::min(angle, 3.0));
@@ -32,13 +38,23 @@ PriorResiduals::PriorResiduals(const MotionPrior& prior, PriorKind kind, const P
       break;
   }
   across_ = TangentBasis(to_.normalized());
-  size_ = with_normal_ ? 3 : 2;
+  num_direction_ = with_normal_ ? 3 : 2;
+  size_ += num_direction_;
 }
 
 void PriorResiduals::Evaluate(const Pose& pose, Residuals* residuals, Jacobian* jacobian) const {
   residuals->resize(size_);
   if (jacobian != nullptr) jacobian->setZero(size_, 6);
   if (size_ == 0) return;
+  if (with_distance_) {
+    const double norm = pose.t.norm();
+    (*residuals)(num_direction_) = distance_weight_ * (norm - distance_);
+    // At t = 0 no direction of t is the longer one.
+    if (jacobian != nullptr && norm > 0) {
+      jacobian->block<1, 3>(num_direction_, 3) = distance_weight_ / norm * pose.t.transpose();
+    }
+  }
+  if (num_direction_ == 0) return;
   const Eigen::Vector3d turned = pose.R * from_;
   residuals->head<2>() = weight_ * across_.transpose() * (turned - to_);
   // d(Exp(d) R from) = -[R from]x d.

@@ -5,6 +5,7 @@
 //            radian of error in n, 2 sin(a/2); below kMinAxisAngle of rotation the axis says
 //            nothing measurable and the chord at kMinAxisAngle is used
 //   normal   the same for R n - n, and the component of t along n over |t| sigma
+//   distance (|t| - D) / sigma, D from wheel odometry, with each of them or alone
 // A part without a sigma gives no residual.
 #ifndef RIGEL_REFINE_PRIOR_RESIDUALS_H_
 #define RIGEL_REFINE_PRIOR_RESIDUALS_H_
@@ -17,7 +18,7 @@
 namespace rigel {
 
 inline constexpr double kMinAxisAngle = 1e-3;  // radians
-inline constexpr int kMaxPriorResiduals = 8;
+inline constexpr int kMaxPriorResiduals = 4;
 
 class PriorResiduals {
  public:
@@ -27,7 +28,7 @@ class PriorResiduals {
 
   PriorResiduals() = default;
   // The weights of axis and normal depend on the angle and |t| of `start` and stay fixed.
-  // `kind` chooses which part of the prior is used.
+  // `kind` chooses which direction of the prior is used.
   PriorResiduals(const MotionPrior& prior, PriorKind kind, const Pose& start);
 
   int size() const { return size_; }
@@ -38,7 +39,11 @@ class PriorResiduals {
 
  private:
   int size_ = 0;
+  int num_direction_ = 0;
   bool with_normal_ = false;
+  bool with_distance_ = false;
+  double distance_ = 0.0;
+  double distance_weight_ = 0.0;
   Eigen::Vector3d from_ = Eigen::Vector3d::Zero();  // R from_ = to_
   Eigen::Vector3d to_ = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 3, 2> across_ = Eigen::Matrix<double, 3, 2>::Zero();

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <cstdio>
 #include <deque>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <utility>
 
 #include <ceres/ceres.h>
+#include <Eigen/Geometry>
 
 #include "rigel/core/angles.h"
 #include "rigel/core/frame_pair.h"
@@ -17,6 +19,8 @@
 #include "rigel/minimal/alignment.h"
 #include "rigel/refine/motion_parameterization.h"
 #include "rigel/refine/prior_residuals.h"
+#include "rigel/refine/reprojection_cost.h"
+#include "rigel/refine/scale_search.h"
 #include "rigel/refine/sign_and_scale.h"
 
 namespace rigel {
@@ -42,11 +46,12 @@ bool ValueOf(const std::array<std::pair<Enum, const char*>, N>& names, std::stri
   return false;
 }
 
-constexpr std::array<std::pair<RefineForm, const char*>, 4> kFormNames = {
+constexpr std::array<std::pair<RefineForm, const char*>, 5> kFormNames = {
     {{RefineForm::kFull, "full"},
      {RefineForm::kPrior, "prior"},
      {RefineForm::kDepths, "depths"},
-     {RefineForm::kPriorDepths, "prior-depths"}}};
+     {RefineForm::kPriorDepths, "prior-depths"},
+     {RefineForm::kBundle, "bundle"}}};
 
 constexpr std::array<std::pair<ResidualKind, const char*>, 3> kResidualNames = {
     {{ResidualKind::kSampson, "sampson"},
@@ -150,14 +155,19 @@ class Refiner {
   RefineSummary Run(Pose* pose);
 
  private:
+  bool PriorIsExact() const {
+    return options_.form == RefineForm::kPrior || options_.form == RefineForm::kPriorDepths;
+  }
   bool SelectInliers(const Pose& pose);
   void EstimateNoise();
   Matrix6d Information(const Pose& pose) const;
   bool ScaleIsFree(const Pose& pose) const;
   bool SearchesScale(const Pose& pose) const;
-  bool ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotation,
+  void ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotation,
                    TranslationForm* translation) const;
-  bool ChooseReference(const Pose& pose, RayPair* reference) const;
+  void HoldDistance(Pose* pose) const;
+  bool ChooseReference(const Pose& pose, RotationForm rotation, TranslationForm translation,
+                       RayPair* reference) const;
   bool Solve(bool scale_free, Pose* pose);
   bool Iterate(Pose* pose);
   bool ExceedsChance() const;
@@ -186,7 +196,9 @@ bool Refiner::Fail(Termination termination, const std::string& message) {
 // True if the selection changed.
 bool Refiner::SelectInliers(const Pose& pose) {
   previous_mask_ = mask_;
-  num_inliers_ = matches_.SelectInliers(pose, options_.threshold_px, &squared_errors_, &mask_);
+  const double gate =
+      std::max(options_.threshold_px, kGateSigmas * options_.noise_px.value_or(0.0));
+  num_inliers_ = matches_.SelectInliers(pose, gate, &squared_errors_, &mask_);
   return mask_ != previous_mask_;
 }
 
@@ -247,10 +259,9 @@ bool Refiner::SearchesScale(const Pose& pose) const {
   return all_intra || !ScaleIsFree(pose);
 }
 
-bool Refiner::ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotation,
+void Refiner::ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotation,
                           TranslationForm* translation) const {
-  const bool prior_exact =
-      options_.form == RefineForm::kPrior || options_.form == RefineForm::kPriorDepths;
+  const bool prior_exact = PriorIsExact();
   const bool planar = prior_exact && options_.prior_kind == PriorKind::kPlanar;
   *rotation = prior_exact ? RotationForm::kAngle : RotationForm::kFree;
   const bool depths =
@@ -262,26 +273,49 @@ bool Refiner::ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotat
   } else {
     // At t = 0 there is no direction to move on a sphere.
     const bool free = scale_free || !(pose.t.norm() > 0);
-    const TranslationForm held =
-        options_.scale == ScaleMode::kFixed ? TranslationForm::kSphere : TranslationForm::kSphere;
     *translation = planar ? (free ? TranslationForm::kPlane : TranslationForm::kCircle)
-                          : (free ? TranslationForm::kFree : held);
+                          : (free ? TranslationForm::kFree : TranslationForm::kSphere);
   }
-  return true;
 }
 
-// Among the inliers of less than the median error the one of largest parallax: its rays say most of
-// l1, l2, and taking it as exact hurts least.
-bool Refiner::ChooseReference(const Pose& pose, RayPair* reference) const {
-  double best = 1e-6;
-  bool found = false;
+// A distance of zero leaves no direction to refine: the start's |t| is kept.
+void Refiner::HoldDistance(Pose* pose) const {
+  const double norm = pose->t.norm();
+  if (options_.scale != ScaleMode::kFixed || !(norm > 0)) return;
+  if (prior_.distance.value_or(0.0) > 0) pose->t *= *prior_.distance / norm;
+}
+
+// Taking a match as exact hurts least with much parallax, since its rays then say most of l1, l2,
+// and with little noise: of the inliers of largest parallax below the median error the one whose
+// exactness changes the score of the start least.
+bool Refiner::ChooseReference(const Pose& pose, RotationForm rotation, TranslationForm translation,
+                              RayPair* reference) const {
+  constexpr size_t kMaxCandidates = 16;
+  constexpr double kMinParallax = 1e-6;
   const double limit = std::max(summary_.median_residual_px, 1e-9);
+  std::vector<std::pair<double, int>> candidates;  // parallax, match
   for (int k = 0; k < matches_.size(); ++k) {
     if (!mask_[k] || squared_errors_[k] > limit * limit) continue;
     const RayPair& rays = matches_.rays(k);
     const double parallax = (pose.R * rays.ray1.x).cross(rays.ray2.x).norm();
-    if (parallax > best) {
-      best = parallax;
+    if (parallax > kMinParallax) candidates.emplace_back(parallax, k);
+  }
+  const size_t count = std::min(candidates.size(), kMaxCandidates);
+  std::partial_sort(candidates.begin(), candidates.begin() + static_cast<long>(count),
+                    candidates.end(), std::greater<>());
+  double best = std::numeric_limits<double>::infinity();
+  const std::array<double, 6> start = {0, 0, 0, 0, 0, 0};
+  bool found = false;
+  for (size_t i = 0; i < count; ++i) {
+    const RayPair& rays = matches_.rays(candidates[i].second);
+    MotionParameterization parameterization;
+    if (!parameterization.Set(rotation, translation, pose, alignment_, rays)) continue;
+    Pose projected;
+    parameterization.Evaluate(start.data(), &projected, nullptr);
+    int inliers = 0;
+    const double score = matches_.Score(projected, options_.threshold_px, best, &inliers);
+    if (score < best) {
+      best = score;
       *reference = rays;
       found = true;
     }
@@ -296,7 +330,7 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
   RayPair reference;
   const bool depths =
       options_.form == RefineForm::kDepths || options_.form == RefineForm::kPriorDepths;
-  if (depths && !ChooseReference(*pose, &reference)) {
+  if (depths && !ChooseReference(*pose, rotation, translation, &reference)) {
     return Fail(Termination::kDegenerate, "no match has the parallax that a reference needs");
   }
   MotionParameterization parameterization;
@@ -328,15 +362,33 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
   problem_options.disable_all_safety_checks = true;
   problem_options.evaluation_callback = &shared;
   ceres::Problem problem(problem_options);
+  const bool bundle = options_.form == RefineForm::kBundle;
+  std::deque<ReprojectionCost> reprojections;
+  std::deque<ReprojectionCost::Point> points;
   for (int k = 0; k < matches_.size(); ++k) {
     if (!mask_[k]) continue;
-    costs.emplace_back(residuals_, shared, k, size);
-    problem.AddResidualBlock(&costs.back(), loss.get(), parameters.data());
+    if (bundle) {
+      const Match& match = matches_.matches()[k];
+      points.push_back(ReprojectionCost::Triangulate(matches_.rig(), match, *pose));
+      reprojections.emplace_back(matches_.rig(), match, shared.pose, shared.basis, size);
+      problem.AddResidualBlock(&reprojections.back(), loss.get(), parameters.data(),
+                               points.back().data());
+    } else {
+      costs.emplace_back(residuals_, shared, k, size);
+      problem.AddResidualBlock(&costs.back(), loss.get(), parameters.data());
+    }
   }
   if (prior.size() > 0) problem.AddResidualBlock(&prior_cost, nullptr, parameters.data());
 
   ceres::Solver::Options solver_options;
-  solver_options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  solver_options.linear_solver_type = bundle ? ceres::DENSE_SCHUR : ceres::DENSE_NORMAL_CHOLESKY;
+  if (bundle) {
+    // The points are eliminated first.
+    auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    for (ReprojectionCost::Point& point : points) ordering->AddElementToGroup(point.data(), 0);
+    ordering->AddElementToGroup(parameters.data(), 1);
+    solver_options.linear_solver_ordering = ordering;
+  }
   solver_options.logging_type = ceres::SILENT;
   solver_options.minimizer_progress_to_stdout = false;
   solver_options.num_threads = 1;
@@ -368,6 +420,7 @@ bool Refiner::Iterate(Pose* pose) {
   for (int round = 0; round < options_.max_rounds; ++round) {
     EstimateNoise();
     scale_free_ = ScaleIsFree(*pose);
+    HoldDistance(pose);
     if (!Solve(scale_free_, pose)) return false;
     ++summary_.num_rounds;
     if (!SelectInliers(*pose)) break;
@@ -389,8 +442,15 @@ bool Refiner::ExceedsChance() const {
   double q = 0.0;
   for (const MatchGroup& group : matches_.groups()) {
     const PinholeCamera& c = matches_.rig().cameras[group.camera2].intrinsics;
-    const double width = c.width > 0 ? c.width : std::max(2.0 * std::abs(c.cx), c.fx);
-    const double height = c.height > 0 ? c.height : std::max(2.0 * std::abs(c.cy), c.fy);
+    // Matches beyond the stated size say more of it than the size does.
+    double width = c.width > 0 ? c.width : std::max(2.0 * std::abs(c.cx), c.fx);
+    double height = c.height > 0 ? c.height : std::max(2.0 * std::abs(c.cy), c.fy);
+    Eigen::AlignedBox2d extent;
+    for (int m = group.begin; m < group.begin + group.size; ++m) {
+      extent.extend(matches_.matches()[m].pixel2);
+    }
+    width = std::max(width, extent.sizes().x());
+    height = std::max(height, extent.sizes().y());
     const double band = 2.0 * options_.threshold_px * std::hypot(width, height);
     q += std::min(1.0, band / (width * height)) * group.size / matches_.size();
   }
@@ -404,15 +464,17 @@ bool Refiner::ExceedsChance() const {
 
 void Refiner::FillUncertainty(const Pose& pose) {
   const Matrix6d information = Information(pose);
+  summary_.scale_free = scale_free_;
   summary_.relative_scale_sigma = RelativeScaleSigma(information, pose);
-  summary_.scale_observable = summary_.relative_scale_sigma <= kScaleObservableRatio;
-  Matrix6d covariance;
-  if (CovarianceOfBasis(information, FullBasis(pose, scale_free_), &covariance)) {
+  const auto set_covariance = [&](const MotionBasis& basis) {
+    Matrix6d covariance;
+    if (!CovarianceOfBasis(information, basis, &covariance)) return;
     summary_.covariance = covariance;
     summary_.rotation_sigma = RotationSigma(covariance);
     summary_.direction_sigma = DirectionSigma(covariance, pose.t);
-    summary_.rotation_observable = RadToDeg(summary_.rotation_sigma) <= kRotationObservableDeg;
-  }
+  };
+  set_covariance(PriorIsExact() ? PriorBasis(pose, alignment_, scale_free_)
+                                : FullBasis(pose, scale_free_));
   summary_.parallax_px = ParallaxPercentilePx(matches_, mask_, pose);
   // A noise level that is given is believed; an estimated one may be a fit to the noise.
   summary_.parallax_limit_px =
@@ -423,11 +485,19 @@ void Refiner::FillUncertainty(const Pose& pose) {
       RadToDeg(summary_.direction_sigma) <= kDirectionObservableDeg &&
       (std::isfinite(summary_.parallax_px) ? summary_.parallax_px > summary_.parallax_limit_px
                                            : summary_.relative_scale_sigma * kParallaxSigmas < 1.0);
-  if (!ExceedsChance()) {
+  if (!summary_.translation_observable && !PriorIsExact()) set_covariance(FullBasis(pose, true));
+  summary_.rotation_observable = summary_.covariance.has_value() &&
+                                 RadToDeg(summary_.rotation_sigma) <= kRotationObservableDeg;
+  summary_.exceeds_chance = ExceedsChance();
+  if (!summary_.exceeds_chance) {
     summary_.rotation_observable = false;
     summary_.translation_observable = false;
   }
-  summary_.scale_observable = summary_.scale_observable && summary_.translation_observable;
+  // With kAuto the scale was left free because it is observable: one decision, not two.
+  summary_.scale_observable =
+      summary_.translation_observable &&
+      (options_.scale == ScaleMode::kAuto ? scale_free_
+                                          : summary_.relative_scale_sigma <= kScaleObservableRatio);
 }
 
 RefineSummary Refiner::Run(Pose* pose) {
@@ -436,9 +506,7 @@ RefineSummary Refiner::Run(Pose* pose) {
     Fail(Termination::kFailure, error);
     return summary_;
   }
-  const bool prior_exact =
-      options_.form == RefineForm::kPrior || options_.form == RefineForm::kPriorDepths;
-  if (prior_exact && !MakeAlignment(prior_, options_.prior_kind, &alignment_, &error)) {
+  if (PriorIsExact() && !MakeAlignment(prior_, options_.prior_kind, &alignment_, &error)) {
     Fail(Termination::kFailure, error);
     return summary_;
   }
@@ -456,6 +524,10 @@ RefineSummary Refiner::Run(Pose* pose) {
     ResolveSignAndScale(matches_, options_.threshold_px, &result);
   }
   bool done = Iterate(&result);
+  if (done && SearchesScale(result) && !ScaleIsFree(result) &&
+      SearchScale(matches_, options_.threshold_px, noise_px_, &result)) {
+    done = Iterate(&result);
+  }
   // A t with another sign or scale is not a minimum: refine again from there.
   if (done) {
     const Eigen::Vector3d t = result.t;
@@ -529,6 +601,16 @@ std::string RefineSummary::BriefReport() const {
 
 std::string RefineSummary::ObservabilityReport() const {
   char text[256];
+  if (!rotation_observable && exceeds_chance) {
+    if (rotation_sigma >= 0) {
+      std::snprintf(text, sizeof(text), "the standard deviation of the rotation is %.1f deg",
+                    RadToDeg(rotation_sigma));
+    } else {
+      std::snprintf(text, sizeof(text), "the %d matches that agree do not determine the rotation",
+                    num_inliers);
+    }
+    return text;
+  }
   if (!rotation_observable) {
     std::snprintf(text, sizeof(text),
                   "%d matches agree: too few, or no more than chance allows, to determine a motion",

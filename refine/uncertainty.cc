@@ -63,6 +63,30 @@ MotionBasis FullBasis(const Pose& pose, bool scale_free) {
   return basis;
 }
 
+MotionBasis PriorBasis(const Pose& pose, const Alignment& alignment, bool scale_free) {
+  const Eigen::Vector3d axis = alignment.AxisInFrame2();
+  const double norm = pose.t.norm();
+  const Eigen::Vector3d direction =
+      norm > 0 ? Eigen::Vector3d(pose.t / norm) : Eigen::Vector3d::UnitZ();
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 3> t_basis;
+  if (alignment.kind == PriorKind::kPlanar) {
+    if (scale_free) {
+      t_basis = TangentBasis(axis);
+    } else {
+      t_basis = axis.cross(direction);
+    }
+  } else if (scale_free) {
+    t_basis = Eigen::Matrix3d::Identity();
+  } else {
+    t_basis = TangentBasis(direction);
+  }
+  MotionBasis basis;
+  basis.setZero(6, 1 + t_basis.cols());
+  basis.block<3, 1>(0, 0) = axis;
+  basis.block(3, 1, 3, t_basis.cols()) = t_basis;
+  return basis;
+}
+
 double RelativeScaleSigma(const Matrix6d& information, const Pose& pose) {
   const double norm = pose.t.norm();
   Matrix6d covariance;

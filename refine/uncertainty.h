@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "rigel/core/pose.h"
+#include "rigel/minimal/alignment.h"
 #include "rigel/minimal/grouped_matches.h"
 #include "rigel/refine/motion_parameterization.h"
 
@@ -44,6 +45,10 @@ bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis, Ma
 
 // The basis of the free rotation with t on the sphere |t| = const (5 columns), or t free (6).
 MotionBasis FullBasis(const Pose& pose, bool scale_free);
+
+// The basis where the prior is exact: the angle about the known direction, and t: free, without
+// its length, or with planar motion in the plane.
+MotionBasis PriorBasis(const Pose& pose, const Alignment& alignment, bool scale_free);
 
 // Standard deviation of |t| over |t| when everything is free; infinity where it is not determined.
 double RelativeScaleSigma(const Matrix6d& information, const Pose& pose);

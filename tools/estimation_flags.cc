@@ -27,10 +27,16 @@ DEFINE_string(prior_noise_axis, "pitch",
 DEFINE_double(prior_sigma_deg, 0,
               "the prior's stated 1-sigma for --use_prior_in_refine; 0: as in the file");
 DEFINE_bool(use_prior_in_refine, false, "weigh the prior by its sigma in the refinement");
-DEFINE_string(refine, "full",
-              "what the refinement frees: none (no refinement; what is observable is then not "
-              "known), full (rotation and translation), prior "
-              "(the prior is exact), depths (a reference match is exact), prior-depths (both)");
+DEFINE_string(
+    refine, "full",
+    "what the refinement frees: none (no refinement; what is observable is then not known), full "
+    "(rotation and translation), prior "
+    "(the prior is exact), depths (a reference match is exact), prior-depths (both), bundle (full "
+    "and the points: reprojection errors)");
+DEFINE_bool(fix_translation_norm, false,
+            "hold |t|: at the file's distance, with --prior=truth at the true one, else as found");
+DEFINE_bool(estimate_noise, false,
+            "estimate the image noise from the residuals even where the file states it");
 DEFINE_string(residual, "sampson",
               "sampson (pixels), angular, or algebraic (for comparison: not robust, and with "
               "intra-camera matches and a free scale it collapses to zero motion)");
@@ -93,7 +99,7 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
 
   estimate.refine_motion = FLAGS_refine != "none";
   if (estimate.refine_motion && !ParseRefineForm(FLAGS_refine, &estimate.refine.form)) {
-    return wrong("refine", FLAGS_refine, "none, full, prior, depths or prior-depths");
+    return wrong("refine", FLAGS_refine, "none, full, prior, depths, prior-depths or bundle");
   }
   if (!ParseResidual(FLAGS_residual, &estimate.refine.residual)) {
     return wrong("residual", FLAGS_residual, "sampson, angular or algebraic");
@@ -102,6 +108,9 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
     return wrong("loss", FLAGS_loss, "none, huber, cauchy, tukey or truncated");
   }
   estimate.refine.use_prior = FLAGS_use_prior_in_refine;
+  estimate.refine.scale = FLAGS_fix_translation_norm ? ScaleMode::kFixed : ScaleMode::kAuto;
+  options->prior.true_distance = FLAGS_fix_translation_norm;
+  options->use_stated_noise = !FLAGS_estimate_noise;
   estimate.ransac.threshold_px = FLAGS_threshold_px;
   estimate.ransac.confidence = FLAGS_confidence;
   estimate.ransac.max_iterations = FLAGS_max_iterations;

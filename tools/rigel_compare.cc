@@ -91,8 +91,8 @@ int Run() {
     EstimateOptions estimate = options.estimate;
     estimate.solver = name;
     Progress progress(name, static_cast<int>(pairs.size()));
-    std::vector<PairResult> results =
-        RunSolver(pairs, estimate, options.num_threads, [&] { progress.Step(); });
+    std::vector<PairResult> results = RunSolver(
+        pairs, estimate, options.num_threads, [&] { progress.Step(); }, options.use_stated_noise);
     summaries.push_back(Summarize(name, "all", results));
     if (FLAGS_by == "sequence") {
       std::map<std::string, std::vector<PairResult>> by_sequence;

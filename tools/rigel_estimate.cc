@@ -51,7 +51,8 @@ int Run() {
     Progress progress(FLAGS_solver, static_cast<int>(pairs.size()));
     ParallelFor(static_cast<int>(pairs.size()), options.num_threads, [&](int k) {
       EstimateOptions pair_options = estimate;
-      if (pairs[k].noise_px) pair_options.refine.noise_px = pairs[k].noise_px;
+      if (options.use_stated_noise && pairs[k].noise_px)
+        pair_options.refine.noise_px = pairs[k].noise_px;
       estimates[k] = EstimateMotion(pair_options, pairs[k]);
       progress.Step();
     });

@@ -57,8 +57,10 @@ void ExpectBound(const RefineOptions& options, const FramePair& pair, const Eige
                  const Eigen::MatrixXd& more_information) {
   const auto bound = ComputeCramerRaoBound(options, pair);
   ASSERT_TRUE(bound.has_value());
-  const Eigen::MatrixXd information = NumericInformation(pair, options.threshold_px, basis) +
-                                      basis.transpose() * more_information * basis;
+  const Eigen::MatrixXd information =
+      NumericInformation(pair, std::max(options.threshold_px, kGateSigmas * *pair.noise_px),
+                         basis) +
+      basis.transpose() * more_information * basis;
   const Matrix6d expected = basis * information.inverse() * basis.transpose();
   EXPECT_LT((bound->covariance - expected).norm(), 1e-5 * expected.norm());
   EXPECT_NEAR(bound->rotation, std::sqrt(expected.block<3, 3>(0, 0).trace()),

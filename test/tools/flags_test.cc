@@ -15,6 +15,8 @@ using testing::StartsWith;
 
 // DESIGN.md, section 10, and --loss.
 const Args kEstimationFlags = {"confidence",
+                               "estimate_noise",
+                               "fix_translation_norm",
                                "loss",
                                "matches",
                                "max_iterations",

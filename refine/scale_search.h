@@ -1,0 +1,20 @@
+// Another |t| for matches that hardly determine it.
+#ifndef RIGEL_REFINE_SCALE_SEARCH_H_
+#define RIGEL_REFINE_SCALE_SEARCH_H_
+
+#include "rigel/core/pose.h"
+#include "rigel/minimal/grouped_matches.h"
+
+namespace rigel {
+
+// What the arms of the cameras (R s - s) say of |t| has local minima: a start with too long a t
+// runs on through infinity, where 1/|t| changes its sign, and stops there. So the motion is
+// optimized again from several lengths, from half the largest arm (with inter-camera matches from
+// a small part of their baselines) up to where the matches could not tell |t| to a factor of about
+// two; noise_px is their 1-sigma noise. Takes the best by the score that looks at depths, if it is
+// better than the present one by an outlier; true if so.
+bool SearchScale(const GroupedMatches& matches, double threshold_px, double noise_px, Pose* pose);
+
+}  // namespace rigel
+
+#endif  // RIGEL_REFINE_SCALE_SEARCH_H_
