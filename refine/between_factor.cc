@@ -1,0 +1,154 @@
+#include "rigel/refine/between_factor.h"
+
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+namespace rigel {
+namespace {
+
+// Below this share of the largest, an eigenvalue is zero but for rounding.
+constexpr double kRankTolerance = 1e-12;
+
+Matrix6d Symmetric(const Matrix6d& m) { return 0.5 * (m + m.transpose()); }
+
+// `inverse` is that of `jacobian`.
+BetweenFactor Convert(const Pose& f2_from_f1, const Matrix6d& jacobian, const Matrix6d& inverse,
+                      const Matrix6d& covariance, const Matrix6d& information) {
+  BetweenFactor factor;
+  factor.measurement = f2_from_f1.Inverse();
+  factor.covariance = Symmetric(jacobian * covariance * jacobian.transpose());
+  factor.information = Symmetric(inverse.transpose() * information * inverse);
+  return factor;
+}
+
+// Written out, so that what is zero stays so.
+Matrix6d InverseGtsamJacobian(const Pose& f2_from_f1) {
+  Matrix6d inverse = -Matrix6d::Identity();
+  inverse.block<3, 3>(3, 0) = Skew(f2_from_f1.t);
+  return inverse;
+}
+
+Matrix6d InverseG2oJacobian(const Pose& f2_from_f1) {
+  const Matrix6d gtsam = InverseGtsamJacobian(f2_from_f1);
+  Matrix6d inverse;
+  inverse.leftCols<3>() = gtsam.rightCols<3>();
+  inverse.rightCols<3>() = 2.0 * gtsam.leftCols<3>();
+  return inverse;
+}
+
+BetweenFactor ToGtsam(const Pose& f2_from_f1, const Matrix6d& covariance,
+                      const Matrix6d& information) {
+  return Convert(f2_from_f1, GtsamJacobian(f2_from_f1), InverseGtsamJacobian(f2_from_f1),
+                 covariance, information);
+}
+
+BetweenFactor ToG2o(const Pose& f2_from_f1, const Matrix6d& covariance,
+                    const Matrix6d& information) {
+  return Convert(f2_from_f1, G2oJacobian(f2_from_f1), InverseG2oJacobian(f2_from_f1), covariance,
+                 information);
+}
+
+}  // namespace
+
+Matrix6d GtsamJacobian(const Pose& f2_from_f1) {
+  // T M' = (Exp(-d), t - Exp(-d) (t + e)) for M' = (Exp(d) R, t + e)^-1.
+  Matrix6d jacobian = -Matrix6d::Identity();
+  jacobian.block<3, 3>(3, 0) = -Skew(f2_from_f1.t);
+  return jacobian;
+}
+
+Matrix6d G2oJacobian(const Pose& f2_from_f1) {
+  const Matrix6d gtsam = GtsamJacobian(f2_from_f1);
+  Matrix6d jacobian;
+  jacobian.topRows<3>() = gtsam.bottomRows<3>();
+  jacobian.bottomRows<3>() = 0.5 * gtsam.topRows<3>();
+  return jacobian;
+}
+
+Matrix6d PseudoInformation(const Matrix6d& covariance) {
+  if (!covariance.allFinite()) return Matrix6d::Zero();
+  Eigen::Matrix<double, 6, 1> scale = Eigen::Matrix<double, 6, 1>::Ones();
+  for (const int block : {0, 3}) {
+    const double trace = covariance.block<3, 3>(block, block).trace();
+    if (trace > 0) scale.segment<3>(block).setConstant(1.0 / std::sqrt(trace));
+  }
+  const Matrix6d scaled = scale.asDiagonal() * Symmetric(covariance) * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
+  const double smallest = kRankTolerance * eigen.eigenvalues()(5);
+  Matrix6d inverse = Matrix6d::Zero();
+  for (int k = 0; k < 6; ++k) {
+    const double variance = eigen.eigenvalues()(k);
+    if (!(variance > smallest)) continue;
+    const auto direction = eigen.eigenvectors().col(k);
+    inverse += direction * direction.transpose() / variance;
+  }
+  const Matrix6d information = scale.asDiagonal() * inverse * scale.asDiagonal();
+  return information.allFinite() ? information : Matrix6d(Matrix6d::Zero());
+}
+
+Matrix6d InformationMatrix(const RefineSummary& summary, const Pose& f2_from_f1) {
+  if (!summary.IsSolutionUsable() || !summary.covariance || !summary.rotation_observable) {
+    return Matrix6d::Zero();
+  }
+  Matrix6d covariance = *summary.covariance;
+  if (!summary.translation_observable) {
+    covariance.bottomRows<3>().setZero();
+    covariance.rightCols<3>().setZero();
+    return PseudoInformation(covariance);
+  }
+  Matrix6d information = PseudoInformation(covariance);
+  const double norm = f2_from_f1.t.norm();
+  if (!summary.scale_free && norm > 0) {
+    // The direction without information is known: without it to the last digit.
+    Eigen::Matrix<double, 6, 1> held = Eigen::Matrix<double, 6, 1>::Zero();
+    held.tail<3>() = f2_from_f1.t / norm;
+    const Matrix6d free = Matrix6d::Identity() - held * held.transpose();
+    information = Symmetric(free * information * free);
+  }
+  return information;
+}
+
+BetweenFactor GtsamBetweenFactor(const Pose& f2_from_f1, const Matrix6d& covariance) {
+  return ToGtsam(f2_from_f1, covariance, PseudoInformation(covariance));
+}
+
+BetweenFactor G2oEdge(const Pose& f2_from_f1, const Matrix6d& covariance) {
+  return ToG2o(f2_from_f1, covariance, PseudoInformation(covariance));
+}
+
+BetweenFactor GtsamBetweenFactor(const Pose& f2_from_f1, const RefineSummary& summary) {
+  return ToGtsam(f2_from_f1, summary.covariance.value_or(Matrix6d(Matrix6d::Zero())),
+                 InformationMatrix(summary, f2_from_f1));
+}
+
+BetweenFactor G2oEdge(const Pose& f2_from_f1, const RefineSummary& summary) {
+  return ToG2o(f2_from_f1, summary.covariance.value_or(Matrix6d(Matrix6d::Zero())),
+               InformationMatrix(summary, f2_from_f1));
+}
+
+void SetUndeterminedLength(double length, Pose* f2_from_f1, RefineSummary* summary) {
+  const double norm = f2_from_f1->t.norm();
+  if (!(norm > 0)) return;
+  const double ratio = length / norm;
+  f2_from_f1->t *= ratio;
+  if (!summary->covariance) return;
+  summary->covariance->bottomRows<3>() *= ratio;
+  summary->covariance->rightCols<3>() *= ratio;
+}
+
+Matrix6d SqrtInformation(const Matrix6d& information) {
+  // Radians and metres are unlike: small eigenvalues of the whole would be lost beside large ones.
+  Eigen::Matrix<double, 6, 1> scale;
+  for (int k = 0; k < 6; ++k) scale(k) = information(k, k) > 0 ? std::sqrt(information(k, k)) : 1.0;
+  const Matrix6d scaled = scale.cwiseInverse().asDiagonal() * Symmetric(information) *
+                          scale.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
+  const Matrix6d root = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+                        eigen.eigenvectors().transpose() * scale.asDiagonal();
+  const Eigen::HouseholderQR<Matrix6d> qr(root);
+  return qr.matrixQR().triangularView<Eigen::Upper>();
+}
+
+}  // namespace rigel
