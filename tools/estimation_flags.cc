@@ -137,7 +137,8 @@ bool CanRefine(const EstimateOptions& estimate, const std::string& solver, std::
   return false;
 }
 
-std::vector<FramePair> ReadPairs(const ComparisonOptions& options, bool* all_read) {
+std::vector<FramePair> ReadPairs(const ComparisonOptions& options, bool* all_read,
+                                 std::vector<int>* positions) {
   std::vector<std::string> errors;
   const std::vector<std::string> paths = ListMatchFiles(FLAGS_matches, &errors);
   *all_read = errors.empty();
@@ -155,6 +156,7 @@ std::vector<FramePair> ReadPairs(const ComparisonOptions& options, bool* all_rea
     }
     SelectMatches(options.use, &pair);
     pairs.push_back(std::move(pair));
+    if (positions != nullptr) positions->push_back(static_cast<int>(k));
   }
   if (pairs.empty()) std::cerr << "nothing to read in " << PrintablePath(FLAGS_matches) << "\n";
   return pairs;

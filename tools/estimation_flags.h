@@ -18,8 +18,10 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error);
 bool CanRefine(const EstimateOptions& estimate, const std::string& solver, std::string* error);
 
 // Reads --matches, keeps the matches that --use names and applies --prior. Every file that cannot
-// be read is told on stderr and sets *all_read to false; the others are returned.
-std::vector<FramePair> ReadPairs(const ComparisonOptions& options, bool* all_read);
+// be read is told on stderr and sets *all_read to false; the others are returned, and in
+// *positions, if asked for, the places they have among all the files.
+std::vector<FramePair> ReadPairs(const ComparisonOptions& options, bool* all_read,
+                                 std::vector<int>* positions = nullptr);
 
 // Says on stderr where --use_prior_in_refine has nothing to weigh.
 void ReportUnweighedPriors(const ComparisonOptions& options,

@@ -36,7 +36,7 @@ std::map<std::string, Args> FlagsOfTools() {
   return {{"benchmark",
            {"json", "num_cameras", "random_axis", "rotation_deg", "seed", "solvers", "trials"}},
           {"compare", kEstimationFlags + Args{"by", "csv", "json", "solvers"}},
-          {"estimate", kEstimationFlags + Args{"csv", "json", "solver"}},
+          {"estimate", kEstimationFlags + Args{"csv", "g2o", "json", "solver"}},
           {"simulate",
            {"inter_share", "motion", "noise_px", "num_cameras", "num_matches", "outlier_share",
             "output", "pairs", "rotation_axis", "rotation_deg", "seed"}}};
@@ -168,6 +168,10 @@ TEST(Flags, ExactPriorOfASolverWithoutOneIsAUsageErrorInTermsOfTheFlags) {
   }
 }
 
+TEST(Flags, PoseGraphWithoutARefinementIsAUsageError) {
+  ExpectUsageError("estimate", {"--refine=none", "--g2o=-"}, "--g2o: without a refinement");
+}
+
 TEST(Flags, UnwritableOutputFileFails) {
   // Solvers are named, so that nothing takes long.
   for (const char* flag : {"--json=/proc/nonexistent/x", "--json=/dev/full", "--json=/"}) {
@@ -192,6 +196,10 @@ TEST_F(Outputs, UnwritableFileFailsAndTheTableIsThereAllTheSame) {
       }
     }
   }
+  const Outcome run = RunTool("estimate", {"--matches=" + matches, "--g2o=/dev/full"});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, HasSubstr("/dev/full: cannot be"));
+  EXPECT_THAT(run.out, HasSubstr("-----"));
 }
 
 TEST_F(Outputs, UnwritableStdoutFails) {
@@ -200,6 +208,7 @@ TEST_F(Outputs, UnwritableStdoutFails) {
       {"estimate", {"--matches=" + matches}},
       {"estimate", {"--matches=" + matches, "--json=-"}},
       {"estimate", {"--matches=" + matches, "--csv=-"}},
+      {"estimate", {"--matches=" + matches, "--g2o=-"}},
       {"compare", {"--matches=" + matches, "--solvers=4pt"}},
       {"compare", {"--matches=" + matches, "--solvers=4pt", "--json=-"}},
       {"benchmark", {"--solvers=4pt", "--trials=2"}},
@@ -230,6 +239,8 @@ TEST_F(Outputs, OnlyOneReportFitsOnStdout) {
   for (const char* tool : {"estimate", "compare"}) {
     ExpectUsageError(tool, {"--json=-", "--csv=-"}, "--csv=-");
   }
+  ExpectUsageError("estimate", {"--json=-", "--g2o=-"}, "--g2o=-: stdout has that of --json");
+  ExpectUsageError("estimate", {"--csv=-", "--g2o=-"}, "--g2o=-: stdout has that of --csv");
 }
 
 }  // namespace

@@ -1,0 +1,126 @@
+#include "rigel/problems/g2o_file.h"
+
+#include <cmath>
+#include <limits>
+#include <locale>
+#include <optional>
+#include <sstream>
+
+#include "rigel/problems/csv.h"
+#include "rigel/problems/match_file.h"
+#include "rigel/refine/between_factor.h"
+
+namespace rigel {
+namespace {
+
+// Why the motion makes no edge; empty if it does.
+std::string WhyNoEdge(const MotionEstimate& e) {
+  if (e.status != EstimateStatus::kSuccess) return EstimateStatusName(e.status);
+  if (!e.refine.IsSolutionUsable() || !e.refine.covariance) return "no refined motion";
+  if (!e.refine.rotation_observable) return "rotation not observable";
+  if (!e.refine.translation_observable) return "direction of translation not observable";
+  return "";
+}
+
+// Why `pair` does not start where `before` ended; empty if it does.
+std::string WhyNotNext(const FramePair& before, const FramePair& pair) {
+  if (pair.sequence != before.sequence) return "another sequence";
+  if (before.time2 && pair.time1 && std::abs(*pair.time1 - *before.time2) > kSameTimeSeconds) {
+    return "starts at " + CsvNumber(*pair.time1) + " s, the pair before ends at " +
+           CsvNumber(*before.time2) + " s";
+  }
+  return "";
+}
+
+std::ostringstream Stream() {
+  std::ostringstream stream;
+  stream.imbue(std::locale::classic());
+  stream.precision(std::numeric_limits<double>::max_digits10);
+  return stream;
+}
+
+void WritePose(const Pose& pose, std::ostream* stream) {
+  const Eigen::Quaterniond q = pose.Quaternion();
+  for (const double v : {pose.t.x(), pose.t.y(), pose.t.z(), q.x(), q.y(), q.z(), q.w()}) {
+    *stream << " " << v;
+  }
+}
+
+}  // namespace
+
+std::string FormatG2o(const std::vector<FramePair>& pairs,
+                      const std::vector<MotionEstimate>& estimates,
+                      const std::vector<int>& positions, std::vector<std::string>* notes) {
+  std::ostringstream vertices = Stream();
+  std::ostringstream edges = Stream();
+  int num_vertices = 0;
+  Pose world_from_body;  // of the last vertex
+  bool open = false;     // a trajectory goes on from there
+  int num_edges = 0;
+  int num_stated = 0;   // edges without scale, of the length that their pair states
+  int num_unknown = 0;  // ... of kLengthWithoutScale
+  const auto add_vertex = [&] {
+    vertices << "VERTEX_SE3:QUAT " << num_vertices++;
+    WritePose(world_from_body, &vertices);
+    vertices << "\n";
+  };
+  const auto note = [&](const std::string& text) {
+    notes->push_back(PrintablePath(text));
+    edges << "# " << notes->back() << "\n";
+  };
+  for (size_t k = 0; k < pairs.size(); ++k) {
+    if (open) {
+      std::string why = WhyNotNext(pairs[k - 1], pairs[k]);
+      if (!positions.empty() && positions[k] != positions[k - 1] + 1) {
+        why = "a pair is missing before it";
+      }
+      if (!why.empty()) {
+        note(pairs[k].name + ": " + why + ": the trajectory ended before it, at vertex " +
+             std::to_string(num_vertices - 1));
+        open = false;
+      }
+    }
+    const std::string why = WhyNoEdge(estimates[k]);
+    if (!why.empty()) {
+      note(pairs[k].name + ": " + why + ": no edge" +
+           (open ? ", the trajectory ends at vertex " + std::to_string(num_vertices - 1)
+                 : std::string()));
+      open = false;
+      continue;
+    }
+    Pose pose = estimates[k].pose;
+    RefineSummary refine = estimates[k].refine;
+    // Not <=, which NaN and the -1 of a summary that does not state it would pass.
+    if (!refine.scale_observable &&
+        !(refine.relative_scale_sigma >= 0 && refine.relative_scale_sigma <= kRoughScaleRatio)) {
+      const std::optional<double>& distance = pairs[k].prior.distance;
+      const bool stated = distance.has_value() && *distance > 0;
+      SetUndeterminedLength(stated ? *distance : kLengthWithoutScale, &pose, &refine);
+      ++(stated ? num_stated : num_unknown);
+    }
+    const BetweenFactor edge = G2oEdge(pose, refine);
+    if (!open) {
+      world_from_body = Pose();
+      add_vertex();
+      open = true;
+    }
+    world_from_body = world_from_body * edge.measurement;
+    add_vertex();
+    ++num_edges;
+    edges << "EDGE_SE3:QUAT " << num_vertices - 2 << " " << num_vertices - 1;
+    WritePose(edge.measurement, &edges);
+    for (int i = 0; i < 6; ++i) {
+      for (int j = i; j < 6; ++j) edges << " " << edge.information(i, j);
+    }
+    edges << "\n";
+  }
+  if (num_stated + num_unknown > 0) {
+    note("|t| is not determined in " + std::to_string(num_stated + num_unknown) + " of " +
+         std::to_string(num_edges) + " edges and has no information: " +
+         std::to_string(num_stated) + " have the distance of their file, " +
+         std::to_string(num_unknown) + " are of " + CsvNumber(kLengthWithoutScale) + " m");
+  }
+  return vertices.str() + edges.str();
+}
+
+}  // namespace rigel
