@@ -90,7 +90,7 @@ std::string FormatG2o(const std::vector<FramePair>& pairs,
     }
     Pose pose = estimates[k].pose;
     RefineSummary refine = estimates[k].refine;
-    // Not <=, which NaN and the -1 of a summary that does not state it would pass.
+    // -1 and NaN are not known, either.
     if (!refine.scale_observable &&
         !(refine.relative_scale_sigma >= 0 && refine.relative_scale_sigma <= kRoughScaleRatio)) {
       const std::optional<double>& distance = pairs[k].prior.distance;
