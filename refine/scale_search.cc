@@ -15,8 +15,20 @@ namespace {
 constexpr int kMaxLengths = 12;
 constexpr double kStep = 3.0;
 constexpr double kHopeless = 0.7;
+constexpr double kFar = 1000.0;
 // The rotation found with a wrong |t| is off by a few sigma.
 constexpr double kLooseFactor = 4.0;
+
+// So many tell one minimum from another.
+constexpr size_t kSubset = 200;
+
+std::vector<Match> EvenSubset(const std::vector<Match>& matches) {
+  const size_t count = std::min(matches.size(), kSubset);
+  std::vector<Match> subset;
+  subset.reserve(count);
+  for (size_t k = 0; k < count; ++k) subset.push_back(matches[k * matches.size() / count]);
+  return subset;
+}
 
 double ShortestLength(const GroupedMatches& matches, const Eigen::Matrix3d& R) {
   double shortest = 0.0;
@@ -36,39 +48,66 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
   double length = ShortestLength(matches, pose->R);
   if (!(norm > 0) || !(length > 0)) return false;
   const Eigen::Vector3d direction = pose->t / norm;
-  const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
+  const GroupedMatches subset(matches.rig(), EvenSubset(matches.matches()));
+  const EpipolarResiduals residuals(subset, ResidualKind::kSampson);
   SmallEngine engine(residuals);
   std::vector<double> errors;
-  std::vector<char> mask(matches.size(), 1);
+  std::vector<char> mask(subset.size(), 1);
   const std::vector<char> all = mask;
 
-  int inliers = 0;
-  double best =
-      matches.ScoreInFront(*pose, threshold_px, std::numeric_limits<double>::infinity(), &inliers) -
-      threshold_px * threshold_px;
-  bool found = false;
+  // Shortest first, in the end one so long that the arms do not matter.
+  std::vector<double> lengths;
+  const double share = subset.size() / static_cast<double>(matches.size());
   for (int k = 0; k < kMaxLengths; ++k, length *= kStep) {
-    Pose candidate = *pose;
-    candidate.t = length * direction;
+    Pose at = *pose;
+    at.t = length * direction;
     const Matrix6d information =
-        SampsonInformation(matches, all, candidate) / (noise_px * noise_px);
-    if (RelativeScaleSigma(information, candidate) > kHopeless) break;
-    ResolveSign(matches, kLooseFactor * threshold_px, &candidate);
+        SampsonInformation(subset, all, at) / (share * noise_px * noise_px);
+    if (RelativeScaleSigma(information, at) > kHopeless) break;
+    lengths.push_back(length);
+  }
+  lengths.push_back(std::max(kFar * ShortestLength(matches, pose->R), kStep * length));
+
+  int inliers = 0;
+  const auto score_of = [&](const GroupedMatches& scored, const Pose& motion) {
+    return scored.ScoreInFront(motion, threshold_px, std::numeric_limits<double>::infinity(),
+                               &inliers);
+  };
+  const double outlier = threshold_px * threshold_px;
+  double best = std::numeric_limits<double>::infinity();
+  Pose found = *pose;
+  // The start takes its place among the lengths.
+  bool start_pending = true;
+  const auto consider = [&](const Pose& candidate) {
+    const double score = score_of(subset, candidate);
+    if (!(score < best - outlier)) return;
+    best = score;
+    found = candidate;
+  };
+  for (auto it = lengths.rbegin(); it != lengths.rend(); ++it) {
+    if (start_pending && norm > *it) {
+      consider(*pose);
+      start_pending = false;
+    }
+    Pose candidate = *pose;
+    candidate.t = *it * direction;
+    ResolveSign(subset, kLooseFactor * threshold_px, &candidate);
     SmallEngineOptions options;
     options.inverse_scale = true;
     for (const double factor : {kLooseFactor, 1.0, 1.0}) {
       options.loss_scale = factor * threshold_px;
-      matches.SelectInliers(candidate, options.loss_scale, &errors, &mask);
+      subset.SelectInliers(candidate, options.loss_scale, &errors, &mask);
       if (!engine.Minimize(options, mask, &candidate)) break;
     }
-    const double score = matches.ScoreInFront(candidate, threshold_px, best, &inliers);
-    if (score < best) {
-      best = score;
-      *pose = candidate;
-      found = true;
-    }
+    consider(candidate);
   }
-  return found;
+  if (start_pending) consider(*pose);
+  // What the subset prefers must not be worse for all.
+  if (found.t == pose->t || !(score_of(matches, found) < score_of(matches, *pose) + outlier)) {
+    return false;
+  }
+  *pose = found;
+  return true;
 }
 
 }  // namespace rigel
