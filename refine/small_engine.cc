@@ -90,6 +90,8 @@ class SmallEngine::Impl {
     return true;
   }
 
+  int num_iterations() const { return solver_.summary.iterations; }
+
  private:
   const EpipolarResiduals& residuals_;
   SmallEngineOptions options_;
@@ -108,5 +110,7 @@ bool SmallEngine::Minimize(const SmallEngineOptions& options, const std::vector<
                            Pose* pose) {
   return impl_->Minimize(options, mask, pose);
 }
+
+int SmallEngine::num_iterations() const { return impl_->num_iterations(); }
 
 }  // namespace rigel

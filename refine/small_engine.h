@@ -34,6 +34,8 @@ class SmallEngine {
   // unchanged, if no step lowers the cost or the result is not finite.
   bool Minimize(const SmallEngineOptions& options, const std::vector<char>& mask, Pose* pose);
 
+  int num_iterations() const;  // of the last call
+
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;

@@ -1,10 +1,12 @@
 // rigel_benchmark: time and reliability of the minimal solvers.
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
 #include <gflags/gflags.h>
 
 #include "rigel/problems/opengv_peers.h"
+#include "rigel/problems/refine_benchmark.h"
 #include "rigel/problems/solver_benchmark.h"
 #include "rigel/problems/table.h"
 #include "rigel/tools/tool.h"
@@ -15,6 +17,8 @@ DEFINE_int32(trials, 10000, "random problems a solver and kind of sample");
 DEFINE_double(rotation_deg, 1, "rotation angle of the problems; 0 is pure translation");
 DEFINE_bool(random_axis, false,
             "turn about a random axis instead of the body's Y (not for planar motion)");
+DEFINE_bool(refine, false,
+            "time the refinement instead of the solvers: 600 inliers, from a hypothesis 1 deg off");
 DEFINE_uint64(seed, 1, "the same seed makes the same problems");
 DEFINE_string(json, "", "write the results (format rigel-benchmark 1) to this file; - is stdout");
 
@@ -36,6 +40,23 @@ constexpr char kUsage[] =
     "median\n"
     "error of the solution nearest to the truth, which for a first-order solver is its bias.\n";
 
+int RunRefinement() {
+  RefineBenchmarkOptions options;
+  options.problems = std::min(FLAGS_trials, 200);
+  options.rotation_deg = FLAGS_rotation_deg;
+  options.seed = FLAGS_seed;
+  const std::vector<RefineBenchmarkRow> rows = BenchmarkRefinement(options);
+  bool ok = true;
+  if (FLAGS_json != "-") {
+    std::cout << RefineBenchmarkTable(rows)
+              << "\nmedian over the problems of the least of five repetitions; "
+              << options.num_matches << " matches, 0.5 px, start 1 deg off\n";
+    ok = FlushStdout();
+  }
+  ok = WriteOutput(FLAGS_json, RefineBenchmarkJson(rows, options)) && ok;
+  return ok ? kExitDone : kExitFailed;
+}
+
 int Run() {
   SolverBenchmarkOptions options;
   options.num_cameras = FLAGS_num_cameras;
@@ -47,6 +68,7 @@ int Run() {
     return UsageError("--num_cameras: expected 1 to 4");
   if (FLAGS_trials < 1) return UsageError("--trials: expected at least 1");
   if (!std::isfinite(FLAGS_rotation_deg)) return UsageError("--rotation_deg: expected a number");
+  if (FLAGS_refine) return RunRefinement();
   std::vector<const SolverInfo*> solvers;
   const std::vector<std::string> names = SplitCommas(FLAGS_solvers);
   if (!FLAGS_solvers.empty() && names.empty()) {

@@ -34,7 +34,8 @@ const Args kEstimationFlags = {"confidence",
 
 std::map<std::string, Args> FlagsOfTools() {
   return {{"benchmark",
-           {"json", "num_cameras", "random_axis", "rotation_deg", "seed", "solvers", "trials"}},
+           {"json", "num_cameras", "random_axis", "refine", "rotation_deg", "seed", "solvers",
+            "trials"}},
           {"compare", kEstimationFlags + Args{"by", "csv", "json", "solvers"}},
           {"estimate", kEstimationFlags + Args{"csv", "g2o", "json", "solver"}},
           {"simulate",
