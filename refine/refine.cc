@@ -92,14 +92,16 @@ class SharedEvaluation : public ceres::EvaluationCallback {
 
 class MatchCost : public ceres::CostFunction {
  public:
-  MatchCost(const EpipolarResiduals& residuals, const SharedEvaluation& shared, int k, int size)
-      : residuals_(&residuals), shared_(&shared), k_(k), size_(size) {
+  MatchCost(const EpipolarResiduals& residuals, const SharedEvaluation& shared, int k, int size,
+            double weight)
+      : residuals_(&residuals), shared_(&shared), k_(k), size_(size), weight_(weight) {
     set_num_residuals(1);
     mutable_parameter_block_sizes()->push_back(size);
   }
   bool Evaluate(double const* const*, double* r, double** jacobians) const override {
     double* jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
-    r[0] = residuals_->Evaluate(shared_->groups, k_, size_, jacobian);
+    r[0] = weight_ * residuals_->Evaluate(shared_->groups, k_, size_, jacobian);
+    for (int m = 0; m < size_ && jacobian != nullptr; ++m) jacobian[m] *= weight_;
     return true;
   }
 
@@ -108,6 +110,7 @@ class MatchCost : public ceres::CostFunction {
   const SharedEvaluation* shared_;
   int k_;
   int size_;
+  double weight_;
 };
 
 class PriorCost : public ceres::CostFunction {
@@ -160,6 +163,8 @@ class Refiner {
   }
   bool SelectInliers(const Pose& pose);
   void EstimateNoise();
+  bool SetWeights(const Pose& pose);
+  Matrix6d WithPrior(Matrix6d information, const Pose& pose) const;
   Matrix6d Information(const Pose& pose) const;
   bool ScaleIsFree(const Pose& pose) const;
   bool SearchesScale(const Pose& pose) const;
@@ -181,6 +186,7 @@ class Refiner {
   Alignment alignment_;
   std::vector<double> squared_errors_;
   std::vector<char> mask_, previous_mask_;  // grouped order
+  std::vector<double> weights_;             // see SetWeights()
   int num_inliers_ = 0;
   double noise_px_ = 1.0;
   bool scale_free_ = true;
@@ -226,7 +232,10 @@ void Refiner::EstimateNoise() {
 }
 
 Matrix6d Refiner::Information(const Pose& pose) const {
-  Matrix6d information = SampsonInformation(matches_, mask_, pose) / (noise_px_ * noise_px_);
+  return WithPrior(SampsonInformation(matches_, mask_, pose) / (noise_px_ * noise_px_), pose);
+}
+
+Matrix6d Refiner::WithPrior(Matrix6d information, const Pose& pose) const {
   if (options_.use_prior) {
     const PriorResiduals prior(prior_, options_.prior_kind, pose);
     PriorResiduals::Residuals r;
@@ -370,11 +379,12 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
     if (bundle) {
       const Match& match = matches_.matches()[k];
       points.push_back(ReprojectionCost::Triangulate(matches_.rig(), match, *pose));
-      reprojections.emplace_back(matches_.rig(), match, shared.pose, shared.basis, size);
+      reprojections.emplace_back(matches_.rig(), match, shared.pose, shared.basis, size,
+                                 weights_[k]);
       problem.AddResidualBlock(&reprojections.back(), loss.get(), parameters.data(),
                                points.back().data());
     } else {
-      costs.emplace_back(residuals_, shared, k, size);
+      costs.emplace_back(residuals_, shared, k, size, weights_[k]);
       problem.AddResidualBlock(&costs.back(), loss.get(), parameters.data());
     }
   }
@@ -414,18 +424,37 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
   return true;
 }
 
+// EpipoleWeights of the inliers, fixed for a round: as a function of the motion they would draw the
+// epipoles to the matches. True if they changed by more than a tenth.
+bool Refiner::SetWeights(const Pose& pose) {
+  const std::vector<double> previous = weights_;
+  if (!options_.epipole_weights || options_.residual == ResidualKind::kAlgebraic) {
+    weights_.assign(mask_.size(), 1.0);
+  } else {
+    EpipoleWeights(matches_, pose, noise_px_, &weights_);
+  }
+  bool changed = previous.size() != weights_.size();
+  for (size_t k = 0; k < weights_.size() && !changed; ++k) {
+    changed = mask_[k] && std::abs(weights_[k] - previous[k]) > 0.1;
+  }
+  return changed;
+}
+
 // Selection of inliers and least squares in turn until the selection stays.
 bool Refiner::Iterate(Pose* pose) {
   SelectInliers(*pose);
+  EstimateNoise();
+  SetWeights(*pose);
   for (int round = 0; round < options_.max_rounds; ++round) {
-    EstimateNoise();
     scale_free_ = ScaleIsFree(*pose);
     HoldDistance(pose);
     if (!Solve(scale_free_, pose)) return false;
     ++summary_.num_rounds;
-    if (!SelectInliers(*pose)) break;
+    const bool reselected = SelectInliers(*pose);
+    EstimateNoise();
+    const bool reweighted = SetWeights(*pose);
+    if (!reselected && !reweighted) break;
   }
-  EstimateNoise();
   return true;
 }
 
@@ -463,9 +492,12 @@ bool Refiner::ExceedsChance() const {
 }
 
 void Refiner::FillUncertainty(const Pose& pose) {
-  const Matrix6d information = Information(pose);
+  const Matrix6d information =
+      options_.epipole_weights
+          ? WithPrior(ReliableInformation(matches_, mask_, pose, noise_px_), pose)
+          : Information(pose);
   summary_.scale_free = scale_free_;
-  summary_.relative_scale_sigma = RelativeScaleSigma(information, pose);
+  summary_.relative_scale_sigma = RelativeScaleSigma(Information(pose), pose);
   const auto set_covariance = [&](const MotionBasis& basis) {
     Matrix6d covariance;
     if (!CovarianceOfBasis(information, basis, &covariance)) return;

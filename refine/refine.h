@@ -53,6 +53,9 @@ struct RefineOptions {
   // without a sigma stays out.
   bool use_prior = false;
 
+  // Matches near an epipole count less (EpipoleWeights), in the fit and in the covariance.
+  bool epipole_weights = true;
+
   LossKind loss = LossKind::kCauchy;
   // Scale of the loss in units of the image noise (given, or estimated from the start); > 0.
   double loss_scale_sigmas = 4.0;

@@ -8,12 +8,13 @@
 namespace rigel {
 
 ReprojectionCost::ReprojectionCost(const Rig& rig, const Match& match, const Pose& pose,
-                                   const MotionBasis& basis, int size)
+                                   const MotionBasis& basis, int size, double weight)
     : camera1_(rig.cameras[match.camera1]),
       camera2_(rig.cameras[match.camera2]),
       match_(match),
       pose_(pose),
-      basis_(basis) {
+      basis_(basis),
+      weight_(weight) {
   set_num_residuals(4);
   mutable_parameter_block_sizes()->push_back(size);
   mutable_parameter_block_sizes()->push_back(3);
@@ -45,16 +46,16 @@ bool ReprojectionCost::Evaluate(double const* const* parameters, double* residua
   // A point in the plane of the camera has no image; the step that leads there is refused.
   if (!(std::abs(y.z()) > 1e-12)) return false;
   const Eigen::Vector2d projected = c2.Project(y);
-  residuals[0] = du;
-  residuals[1] = dv;
-  residuals[2] = projected.x() - match_.pixel2.x();
-  residuals[3] = projected.y() - match_.pixel2.y();
+  residuals[0] = weight_ * du;
+  residuals[1] = weight_ * dv;
+  residuals[2] = weight_ * (projected.x() - match_.pixel2.x());
+  residuals[3] = weight_ * (projected.y() - match_.pixel2.y());
   if (jacobians == nullptr) return true;
 
   Eigen::Matrix<double, 2, 3> by_body;  // of the projection by rho times the point in f2
   by_body << c2.fx / y.z(), 0.0, -c2.fx * y.x() / (y.z() * y.z()),  //
       0.0, c2.fy / y.z(), -c2.fy * y.y() / (y.z() * y.z());
-  by_body *= camera2_.Q.transpose();
+  by_body *= weight_ * camera2_.Q.transpose();
   if (jacobians[0] != nullptr) {
     const int size = static_cast<int>(basis_.cols());
     Eigen::Map<Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>> J(jacobians[0], 4, size);
@@ -67,7 +68,7 @@ bool ReprojectionCost::Evaluate(double const* const* parameters, double* residua
   }
   if (jacobians[1] != nullptr) {
     Eigen::Map<Eigen::Matrix<double, 4, 3, Eigen::RowMajor>> J(jacobians[1]);
-    J.topRows<2>() << 1.0, 0.0, 0.0, 0.0, 1.0, 0.0;
+    J.topRows<2>() << weight_, 0.0, 0.0, 0.0, weight_, 0.0;
     J.block<2, 1>(2, 0) = by_body * RQ.col(0) / c1.fx;
     J.block<2, 1>(2, 1) = by_body * RQ.col(1) / c1.fy;
     J.block<2, 1>(2, 2) = by_body * b;

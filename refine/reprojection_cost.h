@@ -23,10 +23,10 @@ class ReprojectionCost : public ceres::CostFunction {
   using Point = std::array<double, 3>;  // du, dv, rho
 
   // Parameter blocks: the motion (`size` numbers, whose pose and basis the caller keeps up to date
-  // in `pose` and `basis`), and the point. Residuals, pixels: (du, dv), projection - pixel2. All
-  // must outlive this object. The match's cameras must be in the rig.
+  // in `pose` and `basis`), and the point. Residuals, pixels times `weight`: (du, dv), projection -
+  // pixel2. All must outlive this object. The match's cameras must be in the rig.
   ReprojectionCost(const Rig& rig, const Match& match, const Pose& pose, const MotionBasis& basis,
-                   int size);
+                   int size, double weight);
 
   // The point nearest to both rays of the match: (0, 0, rho), rho = 0 if they do not meet in front.
   static Point Triangulate(const Rig& rig, const Match& match, const Pose& pose);
@@ -40,6 +40,7 @@ class ReprojectionCost : public ceres::CostFunction {
   const Match& match_;
   const Pose& pose_;
   const MotionBasis& basis_;
+  double weight_;
 };
 
 }  // namespace rigel

@@ -28,6 +28,92 @@ Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<cha
   return information;
 }
 
+void EpipoleWeights(const GroupedMatches& matches, const Pose& pose, double noise_px,
+                    std::vector<double>* weights) {
+  weights->resize(matches.size());
+  for (const MatchGroup& group : matches.groups()) {
+    const Eigen::Matrix3d F = matches.Fundamental(group, pose);
+    const double floor2 = kEpipoleSigmas * kEpipoleSigmas * noise_px * noise_px *
+                          F.topLeftCorner<2, 2>().squaredNorm();
+    const PixelArrays pixels = matches.Pixels(group);
+    for (int i = 0; i < group.size; ++i) {
+      const Eigen::Vector3d p1(pixels.x1[i], pixels.y1[i], 1.0);
+      const Eigen::Vector3d p2(pixels.x2[i], pixels.y2[i], 1.0);
+      const double gradient2 =
+          (F * p1).head<2>().squaredNorm() + (F.transpose() * p2).head<2>().squaredNorm();
+      (*weights)[group.begin + i] = gradient2 > 0 ? gradient2 / (gradient2 + floor2) : 0.0;
+    }
+  }
+}
+
+namespace {
+
+double ParallaxPx(const GroupedMatches& matches, int k, const Pose& pose) {
+  const PinholeCamera& c = matches.rig().cameras[matches.matches()[k].camera2].intrinsics;
+  const RayPair& rays = matches.rays(k);
+  return 0.5 * (c.fx + c.fy) * (pose.R * rays.ray1.x).cross(rays.ray2.x).norm();
+}
+
+double MedianParallaxPx(const GroupedMatches& matches, const MatchGroup& group,
+                        const std::vector<char>& mask, const Pose& pose) {
+  std::vector<double> parallax;
+  for (int k = group.begin; k < group.begin + group.size; ++k) {
+    if (mask[k]) parallax.push_back(ParallaxPx(matches, k, pose));
+  }
+  if (parallax.empty()) return 0.0;
+  const auto middle = parallax.begin() + static_cast<long>(parallax.size() / 2);
+  std::nth_element(parallax.begin(), middle, parallax.end());
+  return *middle;
+}
+
+}  // namespace
+
+Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<char>& mask,
+                             const Pose& pose, double noise_px) {
+  constexpr double kShortBaseline = 0.1;  // of the longest
+  constexpr double kSigmas = 5.0;
+  constexpr double kParallaxNoise = 6.0;  // sigma
+  const double variance = noise_px * noise_px;
+  const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
+  const MotionBasis basis = FullBasis(pose, true);
+  std::vector<double> weights;
+  EpipoleWeights(matches, pose, noise_px, &weights);
+  std::vector<GroupLinearization> linear;
+  residuals.Linearize(pose, &basis, &linear);
+  std::vector<Matrix6d> information(matches.groups().size(), Matrix6d::Zero());
+  std::vector<double> baseline;
+  Matrix6d sum = Matrix6d::Zero();
+  double longest = 0.0;
+  for (size_t g = 0; g < matches.groups().size(); ++g) {
+    const MatchGroup& group = matches.groups()[g];
+    Eigen::Matrix<double, 6, 1> j;
+    for (int k = group.begin; k < group.begin + group.size; ++k) {
+      if (!mask[k]) continue;
+      residuals.Evaluate(linear, k, 6, j.data());
+      j *= weights[k];
+      information[g].noalias() += j * j.transpose();
+    }
+    information[g] /= variance;
+    sum += information[g];
+    const RigCamera& c1 = matches.rig().cameras[group.camera1];
+    const RigCamera& c2 = matches.rig().cameras[group.camera2];
+    baseline.push_back((pose.R * c1.s + pose.t - c2.s).norm());
+    longest = std::max(longest, baseline.back());
+  }
+  for (size_t g = 0; g < information.size(); ++g) {
+    if (!(baseline[g] < kShortBaseline * longest)) continue;
+    if (!(MedianParallaxPx(matches, matches.groups()[g], mask, pose) < kParallaxNoise * noise_px)) {
+      continue;
+    }
+    Matrix6d others;
+    const bool known = CovarianceOfBasis(sum - information[g], basis, &others);
+    const double sigma = known ? std::sqrt(others.block<3, 3>(3, 3).trace())
+                               : std::numeric_limits<double>::infinity();
+    if (baseline[g] < kSigmas * sigma) sum -= information[g];
+  }
+  return sum;
+}
+
 bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis,
                        Matrix6d* covariance) {
   const int k = static_cast<int>(basis.cols());

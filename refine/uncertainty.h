@@ -39,6 +39,24 @@ inline constexpr double kRotationObservableDeg = 10.0;
 Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<char>& mask,
                             const Pose& pose);
 
+// Matches near an epipole. Their Sampson error is not linear within the noise: sigma |F_2x2| is the
+// gradient's own error. An epipole that moves onto such a match makes its error vanish, whatever
+// the motion is. So the error is multiplied by g^2 / (g^2 + kEpipoleSigmas^2 sigma^2 |F_2x2|^2), g
+// the gradient: by one half at kEpipoleSigmas / sqrt(2) sigma from both epipoles, and it costs the
+// few matches that are so near.
+inline constexpr double kEpipoleSigmas = 20.0;
+
+// That factor of each match (grouped order) at `pose`.
+void EpipoleWeights(const GroupedMatches& matches, const Pose& pose, double noise_px,
+                    std::vector<double>* weights);
+
+// The same over the variance noise_px^2, without what looks like information and is not, because
+// the Sampson error is not linear within the noise there: matches near an epipole count by their
+// EpipoleWeights, and camera pairs whose baseline R s_i + t - s_j is so short that the other
+// matches cannot tell it from zero do not count.
+Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<char>& mask,
+                             const Pose& pose, double noise_px);
+
 // B (B' information B)^-1 B' for the free directions B = `basis` (6 x k). False, and `covariance`
 // left alone, if the information of the free directions is singular.
 bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis, Matrix6d* covariance);

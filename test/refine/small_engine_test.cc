@@ -50,6 +50,7 @@ TEST(SmallEngine, ReachesTheMinimumOfRefine) {
       refine.loss_scale_sigmas = 3.0;
       refine.max_num_iterations = 500;
       refine.scale = ScaleMode::kFree;
+      refine.epipole_weights = false;
       Pose by_refine = start;
       const RefineSummary summary = Refine(refine, matches, pair.prior, &by_refine);
       ASSERT_TRUE(summary.IsSolutionUsable());

@@ -79,7 +79,7 @@ TEST_F(CompareTest, JsonHasTheStructureOfTheFormat) {
     if (failures == 6) continue;  // a baseline that does not fit this motion
     EXPECT_THAT(Keys(entry), UnorderedElementsAre("solver", "sequence", "pairs", "failures",
                                                   "direction_pairs", "raw", "refined", "bound",
-                                                  "inlier_ratio", "iterations", "time_ms"));
+                                                  "nees", "inlier_ratio", "iterations", "time_ms"));
     ExpectStatistics(entry["raw"], {"rotation_deg", "translation_dir_deg", "scale"});
     ExpectStatistics(entry["refined"], {"rotation_deg", "translation_dir_deg", "scale"});
     ExpectStatistics(entry["bound"], {"rotation_deg", "translation_dir_deg"});

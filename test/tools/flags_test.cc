@@ -130,7 +130,7 @@ TEST(Flags, ValueOutOfRangeIsAUsageErrorBeforeAnyFileIsRead) {
         {"--prior_noise_deg=1e308", "prior_noise_deg=1e+308: expected"},
         {"--prior_sigma_deg=-1", "prior_sigma_deg"},
         {"--prior_sigma_deg=inf", "prior_sigma_deg"},
-        {"--refine=most", "none, full, prior, depths or prior-depths"},
+        {"--refine=most", "none, full, prior, depths, prior-depths or bundle"},
         {"--residual=pixels", "sampson, angular or algebraic"},
         {"--loss=l1", "none, huber, cauchy, tukey or truncated"},
         {"--threshold_px=0", "threshold_px must be positive"},
