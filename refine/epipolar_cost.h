@@ -29,10 +29,10 @@
 // Defined as zero with a zero Jacobian, as in Refine(): at E = 0 (the two cameras in one place, for
 // an intra-camera match the zero motion) and at an epipole (the gradient vanishes), both up to
 // rounding. So two equal poses are a stationary point of their intra-camera matches: start from a
-// motion in roughly the right direction, such as EstimateMotion()'s. From a t of the wrong sign the
-// solver does not find back: where scale is not observable the error is the same for t and -t, else
-// there is a minimum near t = 0. Intra-camera matches alone hardly determine the length of t_21
-// (docs/conventions.md): hold it by other residuals or by a manifold.
+// motion in roughly the right direction, such as EstimateMotion()'s. The error is the same for t
+// and -t where scale is not observable; where it is, a start of the wrong sign mostly comes back,
+// but may end in a false minimum near t = 0. Intra-camera matches alone hardly determine the length
+// of t_21 (docs/conventions.md): hold it by other residuals or by a manifold.
 //
 // Errors: a factory returns null if sigma_px is not positive and finite, the rig is not valid
 // (Rig::IsValid), the match names a camera that is not there, a pixel is not finite or `order` is

