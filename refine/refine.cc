@@ -170,7 +170,10 @@ class Refiner {
   bool SearchesScale(const Pose& pose) const;
   void ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotation,
                    TranslationForm* translation) const;
-  void HoldDistance(Pose* pose) const;
+  void TakeDistance(Pose* pose) const;
+  bool WeighsDistance() const {
+    return options_.use_prior && prior_.distance.has_value() && prior_.distance_sigma > 0;
+  }
   bool ChooseReference(const Pose& pose, RotationForm rotation, TranslationForm translation,
                        RayPair* reference) const;
   bool Solve(bool scale_free, Pose* pose);
@@ -261,7 +264,7 @@ bool Refiner::ScaleIsFree(const Pose& pose) const {
 // At the false minima of intra-camera matches the scale looks well determined, so that their kind
 // decides and not the information there.
 bool Refiner::SearchesScale(const Pose& pose) const {
-  if (options_.scale != ScaleMode::kAuto) return false;
+  if (options_.scale != ScaleMode::kAuto || WeighsDistance()) return false;
   const bool all_intra =
       std::all_of(matches_.groups().begin(), matches_.groups().end(),
                   [](const MatchGroup& group) { return group.camera1 == group.camera2; });
@@ -288,10 +291,9 @@ void Refiner::ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotat
 }
 
 // A distance of zero leaves no direction to refine: the start's |t| is kept.
-void Refiner::HoldDistance(Pose* pose) const {
+void Refiner::TakeDistance(Pose* pose) const {
   const double norm = pose->t.norm();
-  if (options_.scale != ScaleMode::kFixed || !(norm > 0)) return;
-  if (prior_.distance.value_or(0.0) > 0) pose->t *= *prior_.distance / norm;
+  if (norm > 0 && prior_.distance.value_or(0.0) > 0) pose->t *= *prior_.distance / norm;
 }
 
 // Taking a match as exact hurts least with much parallax, since its rays then say most of l1, l2,
@@ -447,7 +449,6 @@ bool Refiner::Iterate(Pose* pose) {
   SetWeights(*pose);
   for (int round = 0; round < options_.max_rounds; ++round) {
     scale_free_ = ScaleIsFree(*pose);
-    HoldDistance(pose);
     if (!Solve(scale_free_, pose)) return false;
     ++summary_.num_rounds;
     const bool reselected = SelectInliers(*pose);
@@ -550,6 +551,8 @@ RefineSummary Refiner::Run(Pose* pose) {
   summary_.num_iterations = 0;
   Pose result = *pose;
   ResolveSign(matches_, options_.threshold_px, &result);
+  // Matches that hardly determine |t| would not bring it there from afar.
+  if (options_.scale == ScaleMode::kFixed || WeighsDistance()) TakeDistance(&result);
   SelectInliers(result);
   EstimateNoise();
   if (SearchesScale(result)) {

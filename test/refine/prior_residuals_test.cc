@@ -19,6 +19,8 @@ MotionPrior FullPrior(Random* random) {
   prior.gravity_sigma = random->Uniform(1e-3, 1e-1);
   prior.axis_sigma = random->Uniform(1e-3, 1e-1);
   prior.normal_sigma = random->Uniform(1e-3, 1e-1);
+  prior.distance = random->Uniform(0.5, 2.0);
+  prior.distance_sigma = random->Uniform(1e-3, 1e-1);
   return prior;
 }
 
@@ -34,17 +36,19 @@ TEST(PriorResiduals, OnlyPartsWithASigmaGiveResiduals) {
   const MotionPrior full = FullPrior(&random);
   const Pose pose = RandomPose(&random);
   EXPECT_EQ(PriorResiduals().size(), 0);
-  EXPECT_EQ(PriorResiduals(full, PriorKind::kNone, pose).size(), 0);
-  EXPECT_EQ(PriorResiduals(full, PriorKind::kVertical, pose).size(), 2);
-  EXPECT_EQ(PriorResiduals(full, PriorKind::kAxis, pose).size(), 2);
-  EXPECT_EQ(PriorResiduals(full, PriorKind::kPlanar, pose).size(), 3);
+  // One of the distance with each of them.
+  EXPECT_EQ(PriorResiduals(full, PriorKind::kNone, pose).size(), 1);
+  EXPECT_EQ(PriorResiduals(full, PriorKind::kVertical, pose).size(), 3);
+  EXPECT_EQ(PriorResiduals(full, PriorKind::kAxis, pose).size(), 3);
+  EXPECT_EQ(PriorResiduals(full, PriorKind::kPlanar, pose).size(), 4);
   // At t = 0 a plane says nothing of the direction of t.
-  EXPECT_EQ(PriorResiduals(full, PriorKind::kPlanar, Pose()).size(), 2);
+  EXPECT_EQ(PriorResiduals(full, PriorKind::kPlanar, Pose()).size(), 3);
 
   MotionPrior silent = full;
   silent.gravity_sigma.reset();
   silent.axis_sigma.reset();
   silent.normal_sigma.reset();
+  silent.distance_sigma = 0.0;
   MotionPrior empty;
   empty.gravity_sigma = empty.axis_sigma = empty.normal_sigma = 0.01;
   for (const PriorKind kind : {PriorKind::kVertical, PriorKind::kAxis, PriorKind::kPlanar}) {

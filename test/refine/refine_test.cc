@@ -527,6 +527,49 @@ TEST(Refine, FixedScaleKeepsTheLengthOfT) {
   }
 }
 
+TEST(Refine, FixedScaleHoldsTheDistanceOfThePrior) {
+  SceneOptions scene;
+  FramePair pair = ScenePair(scene, 4);
+  Random random(4);
+  RefineOptions options;
+  options.scale = ScaleMode::kFixed;
+  for (const double distance : {1.0, 2.5}) {
+    pair.prior.distance = distance;
+    Pose pose = StartNear(*pair.truth, 0.05, 0.02, &random);
+    ASSERT_TRUE(RefinePair(options, pair, &pose).IsSolutionUsable());
+    EXPECT_NEAR(pose.t.norm(), distance, 1e-12);
+  }
+  // No direction can be held at a distance of zero: |t| stays as at the start.
+  pair.prior.distance = 0.0;
+  Pose pose = StartNear(*pair.truth, 0.05, 0.02, &random);
+  const double length = pose.t.norm();
+  ASSERT_TRUE(RefinePair(options, pair, &pose).IsSolutionUsable());
+  EXPECT_NEAR(pose.t.norm(), length, 1e-12);
+}
+
+// Wheel odometry of two percent on matches that say nothing of |t|.
+TEST(Refine, ADistanceWithASigmaMakesTheScaleObservable) {
+  SceneOptions scene;
+  double error2 = 0.0;
+  constexpr int kPairs = 50;
+  for (int index = 0; index < kPairs; ++index) {
+    FramePair pair = ScenePair(scene, index);
+    Random random = Random::Stream(9, index);
+    const double sigma = 0.02;
+    pair.prior.distance = 1.0 + sigma * random.Normal();
+    pair.prior.distance_sigma = sigma;
+    RefineOptions options;
+    options.use_prior = true;
+    Pose pose = StartNear(*pair.truth, 0.05, 0.1, &random);
+    const RefineSummary summary = RefinePair(options, pair, &pose);
+    ASSERT_TRUE(summary.IsSolutionUsable());
+    EXPECT_TRUE(summary.scale_observable) << index;
+    EXPECT_NEAR(summary.relative_scale_sigma, sigma, 0.1 * sigma);
+    error2 += std::pow(ScaleError(pair.truth->t, pose.t) / sigma, 2);
+  }
+  EXPECT_NEAR(std::sqrt(error2 / kPairs), 1.0, 0.3);
+}
+
 TEST(Refine, TheSummaryFitsTheMotionInTheOrderOfTheInput) {
   for (int index = 0; index < 20; ++index) {
     SceneOptions scene;
