@@ -19,16 +19,23 @@ struct OpenGvSample {
   opengv::rotations_t rotations;
 
   OpenGvSample(const PreparedMatches& matches, const int* sample, int size) {
-    for (int k = 0; k < size; ++k) {
-      const RayPair& rays = matches.rays(sample[k]);
-      bearings1.push_back(rays.ray1.x);
-      bearings2.push_back(rays.ray2.x);
-      cameras1.push_back(2 * k);
-      cameras2.push_back(2 * k + 1);
-      offsets.push_back(rays.ray1.s);
-      offsets.push_back(rays.ray2.s);
+    for (int k = 0; k < size; ++k) Add(matches.rays(sample[k]));
+  }
+  explicit OpenGvSample(const GroupedMatches& matches) {
+    for (int k = 0; k < matches.size(); ++k) Add(matches.rays(k));
+  }
+
+ private:
+  void Add(const RayPair& rays) {
+    const int k = static_cast<int>(bearings1.size());
+    bearings1.push_back(rays.ray1.x);
+    bearings2.push_back(rays.ray2.x);
+    cameras1.push_back(2 * k);
+    cameras2.push_back(2 * k + 1);
+    for (const Eigen::Vector3d& s : {rays.ray1.s, rays.ray2.s}) {
+      offsets.push_back(s);
+      rotations.push_back(Eigen::Matrix3d::Identity());
     }
-    rotations.assign(2 * static_cast<size_t>(size), Eigen::Matrix3d::Identity());
   }
 };
 
@@ -62,6 +69,19 @@ int SolveOpenGvSeventeenpt(const PreparedMatches& matches, const int* sample,
 }
 
 }  // namespace
+
+bool RefineWithOpenGv(const GroupedMatches& matches, Pose* pose) {
+  const OpenGvSample data(matches);
+  opengv::relative_pose::NoncentralRelativeAdapter adapter(
+      data.bearings1, data.bearings2, data.cameras1, data.cameras2, data.offsets, data.rotations,
+      -pose->R.transpose() * pose->t, pose->R.transpose());
+  const opengv::transformation_t T = opengv::relative_pose::optimize_nonlinear(adapter);
+  pose->R = T.leftCols<3>().transpose();
+  pose->t = -pose->R * T.col(3);
+  return pose->AllFinite();
+}
+#else
+bool RefineWithOpenGv(const GroupedMatches& /*matches*/, Pose* /*pose*/) { return false; }
 #endif
 
 const std::vector<SolverInfo>& OpenGvPeers() {

@@ -12,6 +12,7 @@
 #include "rigel/core/metrics.h"
 #include "rigel/core/random.h"
 #include "rigel/minimal/grouped_matches.h"
+#include "rigel/problems/opengv_peers.h"
 #include "rigel/problems/statistics.h"
 #include "rigel/problems/synthetic.h"
 #include "rigel/problems/table.h"
@@ -134,6 +135,12 @@ std::vector<RefineBenchmarkRow> BenchmarkRefinement(const RefineBenchmarkOptions
                          }));
     }
   }
+  if (!OpenGvPeers().empty()) {
+    rows.push_back(Run("opengv", "none", problems,
+                       [](const Problem& problem, Pose* pose, int* /*iterations*/) {
+                         return RefineWithOpenGv(problem.matches, pose);
+                       }));
+  }
   return rows;
 }
 
@@ -144,7 +151,8 @@ std::string RefineBenchmarkTable(const std::vector<RefineBenchmarkRow>& rows) {
       {"refinement", "loss", "median", "spread", "tions", "rotation", "direction", "fail"});
   for (const RefineBenchmarkRow& row : rows) {
     table.AddRow({row.engine, row.loss, FormatNumber(row.median_us, 0),
-                  FormatNumber(row.spread_us, 0), FormatNumber(row.iterations, 1),
+                  FormatNumber(row.spread_us, 0),
+                  row.iterations < 0 ? "-" : FormatNumber(row.iterations, 1),
                   FormatNumber(row.rotation_deg, 4), FormatNumber(row.translation_dir_deg, 3),
                   FormatNumber(row.failures, 3)});
   }
