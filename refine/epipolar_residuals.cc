@@ -1,6 +1,7 @@
 #include "rigel/refine/epipolar_residuals.h"
 
 #include <cmath>
+#include <limits>
 
 #include "rigel/core/epipolar.h"
 
@@ -52,6 +53,8 @@ void EpipolarResiduals::Linearize(const Pose& pose, const MotionBasis* basis,
       right.col(1) /= c1.intrinsics.fy;
     }
     linear.F = left * Skew(b) * right;
+    constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
+    linear.rounding2 = kRounding * kRounding * linear.F.squaredNorm();
     if (basis == nullptr) continue;
     for (int m = 0; m < basis->cols(); ++m) {
       // d([b]x R) = ([db]x + [b]x [w]x) R with db = w x R s + e.
@@ -86,7 +89,8 @@ double EpipolarResiduals::Evaluate(const std::vector<GroupLinearization>& groups
       b -= C * p1;
     }
     const double gradient2 = a.squaredNorm() + b.squaredNorm();
-    if (!(gradient2 > 0.0) || !std::isfinite(gradient2)) {
+    if (!(gradient2 > linear.rounding2 * (p1.squaredNorm() + p2.squaredNorm())) ||
+        !std::isfinite(gradient2)) {
       for (int m = 0; m < num_parameters && jacobian != nullptr; ++m) jacobian[m * stride] = 0.0;
       return 0.0;
     }

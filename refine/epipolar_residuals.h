@@ -7,8 +7,8 @@
 //               motion R = I, t = 0 whatever the matches are, and least squares on it runs there:
 //               honest for inter-camera matches only.
 //
-// kSampson and kAngular do not change when E is scaled. At an epipole (gradient zero) and at E = 0
-// residual and Jacobian are defined as zero.
+// kSampson and kAngular do not change when E is scaled. At an epipole (gradient zero up to
+// rounding) and at E = 0 their residual and Jacobian are defined as zero.
 #ifndef RIGEL_REFINE_EPIPOLAR_RESIDUALS_H_
 #define RIGEL_REFINE_EPIPOLAR_RESIDUALS_H_
 
@@ -28,6 +28,7 @@ enum class ResidualKind { kSampson, kAngular, kAlgebraic };
 struct GroupLinearization {
   Eigen::Matrix3d F;
   Eigen::Matrix3d dF[6];
+  double rounding2;  // times |p|^2: what rounding can make of a squared gradient of zero
 };
 
 class EpipolarResiduals {
