@@ -363,7 +363,7 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
   PriorCost prior_cost(prior, shared, noise_px_, size);
   // The algebraic residual is in metres: a scale in pixels means nothing to it.
   const std::unique_ptr<ceres::LossFunction> loss =
-      options_.residual == ResidualKind::kAlgebraic
+      options_.residual == ResidualKind::kAlgebraic && options_.form != RefineForm::kBundle
           ? nullptr
           : MakeLoss(options_.loss, options_.loss_scale_sigmas * noise_px_);
 
@@ -375,7 +375,9 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
   ceres::Problem problem(problem_options);
   const bool bundle = options_.form == RefineForm::kBundle;
   std::deque<ReprojectionCost> reprojections;
-  std::deque<ReprojectionCost::Point> points;
+  // In one piece: Ceres orders the blocks of a group by their addresses.
+  std::vector<ReprojectionCost::Point> points;
+  if (bundle) points.reserve(mask_.size());
   for (int k = 0; k < matches_.size(); ++k) {
     if (!mask_[k]) continue;
     if (bundle) {
@@ -430,7 +432,9 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
 // epipoles to the matches. True if they changed by more than a tenth.
 bool Refiner::SetWeights(const Pose& pose) {
   const std::vector<double> previous = weights_;
-  if (!options_.epipole_weights || options_.residual == ResidualKind::kAlgebraic) {
+  const bool algebraic =
+      options_.residual == ResidualKind::kAlgebraic && options_.form != RefineForm::kBundle;
+  if (!options_.epipole_weights || algebraic) {
     weights_.assign(mask_.size(), 1.0);
   } else {
     EpipoleWeights(matches_, pose, noise_px_, &weights_);
