@@ -2,8 +2,8 @@
 //
 //   gravity  the two components of R g1 across g2, over sqrt(2) sigma: both directions are measured
 //   axis     the two components of R n - n across n, over sigma times the length of that chord per
-//            radian of error in n, 2 sin(a/2), a at most 3; below kMinAxisAngle of rotation the axis says
-//            nothing measurable and the chord at kMinAxisAngle is used
+//            radian of error in n, 2 sin(a/2), a at most 3; below kMinAxisAngle of rotation the
+//            axis says nothing measurable and the chord at kMinAxisAngle is used
 //   normal   the same for R n - n, and the component of t along n over |t| sigma
 //   distance (|t| - D) / sigma, D from wheel odometry, with each of them or alone
 // A part without a sigma gives no residual.
