@@ -16,6 +16,14 @@ bool LiesBehind(const Pose& pose, const RayPair& rays, double min_sin_parallax) 
 
 }  // namespace
 
+std::vector<Match> EvenSubset(const std::vector<Match>& matches, size_t count) {
+  count = std::min(count, matches.size());
+  std::vector<Match> subset;
+  subset.reserve(count);
+  for (size_t k = 0; k < count; ++k) subset.push_back(matches[k * matches.size() / count]);
+  return subset;
+}
+
 GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches) : rig_(rig) {
   const int n = static_cast<int>(matches.size());
   original_.resize(n);

@@ -23,6 +23,10 @@ struct MatchGroup {
   int size = 0;
 };
 
+// At most `count` of the matches, evenly over their order: enough to tell a good motion from a bad
+// one.
+std::vector<Match> EvenSubset(const std::vector<Match>& matches, size_t count);
+
 class GroupedMatches {
  public:
   GroupedMatches() = default;

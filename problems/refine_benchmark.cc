@@ -95,8 +95,7 @@ RefineBenchmarkRow Run(const std::string& name, const std::string& loss,
   if (const auto s = ComputeStatistics(times)) row.median_us = s->median;
   if (const auto s = ComputeStatistics(rotations)) row.rotation_deg = s->rms;
   if (const auto s = ComputeStatistics(directions)) row.translation_dir_deg = s->rms;
-  std::sort(times.begin(), times.end());
-  row.spread_us = 0.5 * (times[times.size() * 3 / 4] - times[times.size() / 4]);
+  row.spread_us = QuartileDistance(times);
   return row;
 }
 

@@ -60,12 +60,6 @@ std::vector<double> TimeBatches(int n, const Run& run) {
   return times;
 }
 
-double QuartileDistance(std::vector<double> values) {
-  if (values.size() < 4) return 0.0;
-  std::sort(values.begin(), values.end());
-  return 0.5 * (values[values.size() * 3 / 4] - values[values.size() / 4]);
-}
-
 std::string ProcessorName() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {

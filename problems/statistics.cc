@@ -15,6 +15,12 @@ double Quantile(const std::vector<double>& sorted, double q) {
 
 }  // namespace
 
+double QuartileDistance(std::vector<double> values) {
+  if (values.size() < 4) return 0.0;
+  std::sort(values.begin(), values.end());
+  return 0.5 * (values[values.size() * 3 / 4] - values[values.size() / 4]);
+}
+
 std::optional<Statistics> ComputeStatistics(std::vector<double> values) {
   if (values.empty()) return std::nullopt;
   std::sort(values.begin(), values.end());

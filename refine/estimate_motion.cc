@@ -23,7 +23,7 @@ class FramePairSolver {
                   const Alignment& alignment, double threshold_px)
       : solver_(solver),
         matches_(matches),
-        subset_(matches.rig(), EvenSubset(matches.matches())),
+        subset_(matches.rig(), EvenSubset(matches.matches(), kSubset)),
         prepared_(matches.rig(), matches.matches(), alignment),
         sampler_(matches.groups(), solver.sampling, solver.sample_size),
         residuals_(matches, ResidualKind::kSampson),
@@ -84,16 +84,7 @@ class FramePairSolver {
   // A motion prior that is off by half a degree moves points by a few pixels.
   static constexpr double kLooseFactor = 4.0;
   // So many matches tell a good hypothesis from a bad one loosely.
-  static constexpr int kSubset = 128;
-
-  static std::vector<Match> EvenSubset(const std::vector<Match>& matches) {
-    const size_t n = matches.size();
-    const size_t count = std::min<size_t>(n, kSubset);
-    std::vector<Match> subset;
-    subset.reserve(count);
-    for (size_t k = 0; k < count; ++k) subset.push_back(matches[k * n / count]);
-    return subset;
-  }
+  static constexpr size_t kSubset = 128;
 
   bool OptimizeAt(double threshold, Model* model) const {
     SmallEngineOptions options;

@@ -164,6 +164,7 @@ class Refiner {
   bool SelectInliers(const Pose& pose);
   void EstimateNoise();
   bool SetWeights(const Pose& pose);
+  bool ReferenceIsStale(const Pose& pose) const;
   Matrix6d WithPrior(Matrix6d information, const Pose& pose) const;
   Matrix6d Information(const Pose& pose) const;
   bool ScaleIsFree(const Pose& pose) const;
@@ -174,8 +175,10 @@ class Refiner {
   bool WeighsDistance() const {
     return options_.use_prior && prior_.distance.has_value() && prior_.distance_sigma > 0;
   }
-  bool ChooseReference(const Pose& pose, RotationForm rotation, TranslationForm translation,
-                       RayPair* reference) const;
+  bool HasReference() const {
+    return options_.form == RefineForm::kDepths || options_.form == RefineForm::kPriorDepths;
+  }
+  int ChooseReference(const Pose& pose, RotationForm rotation, TranslationForm translation) const;
   bool Solve(bool scale_free, Pose* pose);
   bool Iterate(Pose* pose);
   bool ExceedsChance() const;
@@ -193,6 +196,7 @@ class Refiner {
   int num_inliers_ = 0;
   double noise_px_ = 1.0;
   bool scale_free_ = true;
+  int reference_match_ = -1;  // of the depth forms, grouped order
   RefineSummary summary_;
 };
 
@@ -276,9 +280,7 @@ void Refiner::ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotat
   const bool prior_exact = PriorIsExact();
   const bool planar = prior_exact && options_.prior_kind == PriorKind::kPlanar;
   *rotation = prior_exact ? RotationForm::kAngle : RotationForm::kFree;
-  const bool depths =
-      options_.form == RefineForm::kDepths || options_.form == RefineForm::kPriorDepths;
-  if (depths) {
+  if (HasReference()) {
     *translation =
         planar ? (scale_free ? TranslationForm::kPlanarDepths : TranslationForm::kPlanarDepth)
                : (scale_free ? TranslationForm::kDepths : TranslationForm::kDepth);
@@ -298,9 +300,9 @@ void Refiner::TakeDistance(Pose* pose) const {
 
 // Taking a match as exact hurts least with much parallax, since its rays then say most of l1, l2,
 // and with little noise: of the inliers of largest parallax below the median error the one whose
-// exactness changes the score of the start least.
-bool Refiner::ChooseReference(const Pose& pose, RotationForm rotation, TranslationForm translation,
-                              RayPair* reference) const {
+// exactness changes the score of the start least. -1 if there is none.
+int Refiner::ChooseReference(const Pose& pose, RotationForm rotation,
+                             TranslationForm translation) const {
   constexpr size_t kMaxCandidates = 16;
   constexpr double kMinParallax = 1e-6;
   const double limit = std::max(summary_.median_residual_px, 1e-9);
@@ -316,7 +318,7 @@ bool Refiner::ChooseReference(const Pose& pose, RotationForm rotation, Translati
                     candidates.end(), std::greater<>());
   double best = std::numeric_limits<double>::infinity();
   const std::array<double, 6> start = {0, 0, 0, 0, 0, 0};
-  bool found = false;
+  int found = -1;
   for (size_t i = 0; i < count; ++i) {
     const RayPair& rays = matches_.rays(candidates[i].second);
     MotionParameterization parameterization;
@@ -327,8 +329,7 @@ bool Refiner::ChooseReference(const Pose& pose, RotationForm rotation, Translati
     const double score = matches_.Score(projected, options_.threshold_px, best, &inliers);
     if (score < best) {
       best = score;
-      *reference = rays;
-      found = true;
+      found = candidates[i].second;
     }
   }
   return found;
@@ -339,11 +340,12 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
   TranslationForm translation;
   ChooseForms(*pose, scale_free, &rotation, &translation);
   RayPair reference;
-  const bool depths =
-      options_.form == RefineForm::kDepths || options_.form == RefineForm::kPriorDepths;
-  if (depths && !ChooseReference(*pose, rotation, translation, &reference)) {
+  const bool depths = HasReference();
+  reference_match_ = depths ? ChooseReference(*pose, rotation, translation) : -1;
+  if (depths && reference_match_ < 0) {
     return Fail(Termination::kDegenerate, "no match has the parallax that a reference needs");
   }
+  if (depths) reference = matches_.rays(reference_match_);
   MotionParameterization parameterization;
   if (!parameterization.Set(rotation, translation, *pose, alignment_, reference)) {
     return Fail(Termination::kDegenerate, "the start has no place in the parameterization");
@@ -446,6 +448,16 @@ bool Refiner::SetWeights(const Pose& pose) {
   return changed;
 }
 
+// A reference chosen at a poor start is a poor one: its rays, taken as exact, hold the motion
+// there.
+bool Refiner::ReferenceIsStale(const Pose& pose) const {
+  if (!HasReference()) return false;
+  RotationForm rotation;
+  TranslationForm translation;
+  ChooseForms(pose, scale_free_, &rotation, &translation);
+  return ChooseReference(pose, rotation, translation) != reference_match_;
+}
+
 // Selection of inliers and least squares in turn until the selection stays.
 bool Refiner::Iterate(Pose* pose) {
   SelectInliers(*pose);
@@ -458,7 +470,7 @@ bool Refiner::Iterate(Pose* pose) {
     const bool reselected = SelectInliers(*pose);
     EstimateNoise();
     const bool reweighted = SetWeights(*pose);
-    if (!reselected && !reweighted) break;
+    if (!reselected && !reweighted && !ReferenceIsStale(*pose)) break;
   }
   return true;
 }

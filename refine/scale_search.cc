@@ -22,14 +22,6 @@ constexpr double kLooseFactor = 4.0;
 // So many tell one minimum from another.
 constexpr size_t kSubset = 200;
 
-std::vector<Match> EvenSubset(const std::vector<Match>& matches) {
-  const size_t count = std::min(matches.size(), kSubset);
-  std::vector<Match> subset;
-  subset.reserve(count);
-  for (size_t k = 0; k < count; ++k) subset.push_back(matches[k * matches.size() / count]);
-  return subset;
-}
-
 double ShortestLength(const GroupedMatches& matches, const Eigen::Matrix3d& R) {
   double shortest = 0.0;
   for (const MatchGroup& group : matches.groups()) {
@@ -48,7 +40,7 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
   double length = ShortestLength(matches, pose->R);
   if (!(norm > 0) || !(length > 0)) return false;
   const Eigen::Vector3d direction = pose->t / norm;
-  const GroupedMatches subset(matches.rig(), EvenSubset(matches.matches()));
+  const GroupedMatches subset(matches.rig(), EvenSubset(matches.matches(), kSubset));
   const EpipolarResiduals residuals(subset, ResidualKind::kSampson);
   SmallEngine engine(residuals);
   std::vector<double> errors;

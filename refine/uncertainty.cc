@@ -200,13 +200,10 @@ double ParallaxPercentilePx(const GroupedMatches& matches, const std::vector<cha
   for (int k = 0; k < matches.size(); ++k) {
     const Match& m = matches.matches()[k];
     if (!mask[k] || !m.IsIntra()) continue;
-    const RigCamera& camera = matches.rig().cameras[m.camera1];
-    const PinholeCamera& c = camera.intrinsics;
-    const Eigen::Vector3d x1 = pose.R * camera.Q * c.Normalize(m.pixel1).normalized();
-    const Eigen::Vector3d x2 = camera.Q * c.Normalize(m.pixel2).normalized();
-    const double arm = (pose.R * camera.s - camera.s).norm();
+    const Eigen::Vector3d& s = matches.rig().cameras[m.camera1].s;
+    const double arm = (pose.R * s - s).norm();
     const double share = pose.t.norm() > 0 ? pose.t.norm() / (pose.t.norm() + arm) : 0.0;
-    parallax.push_back(0.5 * (c.fx + c.fy) * share * x1.cross(x2).norm());
+    parallax.push_back(share * ParallaxPx(matches, k, pose));
   }
   if (parallax.empty()) return std::numeric_limits<double>::infinity();
   const auto nth = parallax.begin() + static_cast<long>(parallax.size() * 4 / 5);

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -226,6 +227,32 @@ TEST(Comparison, WithoutRefinementTheScaleNeedsMatchesBetweenCameras) {
   EXPECT_FALSE(results[0].raw->scale.has_value());
   EXPECT_TRUE(results[1].raw->scale.has_value());
   EXPECT_FALSE(Summarize("4pt-axis", "all", {results[0]}).raw_scale.has_value());
+}
+
+// Errors in units of the stated covariance: 1 a degree of freedom where the noise is what the pairs
+// state, a quarter where they state twice as much.
+TEST(Comparison, NeesTestsTheStatedCovariance) {
+  for (const double stated : {1.0, 2.0}) {
+    std::vector<FramePair> pairs;
+    for (int index = 0; index < 200; ++index) {
+      SceneOptions scene;
+      scene.motion = MotionPattern::kRandom;
+      scene.inter_share = 0.5;
+      pairs.push_back(ScenePair(scene, index));
+      pairs.back().noise_px = stated * *pairs.back().noise_px;
+    }
+    EstimateOptions options;
+    options.solver = "4pt";
+    const SolverSummary s = Summarize("4pt", "all", RunSolver(pairs, options, 2, {}));
+    ASSERT_TRUE(s.nees_ratio.has_value());
+    std::printf("[ measured ] noise stated %.0f times: NEES %.3f of %.2f, %.3f to %.3f\n", stated,
+                *s.nees_ratio, s.nees_dof, s.nees_low, s.nees_high);
+    EXPECT_NEAR(*s.nees_ratio * stated * stated, 1.0, 0.12);
+    EXPECT_NEAR(s.nees_dof, 6.0, 0.1);
+    // 1200 degrees of freedom: 1 +- 2.58 sqrt(2 / 1200).
+    EXPECT_NEAR(s.nees_low, 0.898, 0.01);
+    EXPECT_NEAR(s.nees_high, 1.108, 0.01);
+  }
 }
 
 // A truth that stands still has no direction to be held to.

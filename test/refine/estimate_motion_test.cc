@@ -218,19 +218,26 @@ TEST(EstimateMotion, ConcurrentCallsGiveTheSameBits) {
   SceneOptions scene;
   scene.inter_share = 0.3;
   scene.outlier_share = 0.2;
+  constexpr int kPairs = 4;
   std::vector<FramePair> pairs;
-  std::vector<MotionEstimate> expected;
-  for (int index = 0; index < 4; ++index) {
-    pairs.push_back(ScenePair(scene, index));
-    expected.push_back(EstimateMotion(With("4pt-axis"), pairs.back()));
-  }
-  std::vector<MotionEstimate> estimates(32);
-  ParallelFor(32, 8, [&](int k) { estimates[k] = EstimateMotion(With("4pt-axis"), pairs[k % 4]); });
-  for (int k = 0; k < 32; ++k) {
-    EXPECT_TRUE(SameBits(estimates[k].pose, expected[k % 4].pose)) << k;
-    EXPECT_TRUE(SameBits(estimates[k].raw, expected[k % 4].raw)) << k;
-    EXPECT_EQ(estimates[k].refine.final_cost, expected[k % 4].refine.final_cost) << k;
-    EXPECT_EQ(estimates[k].refine.inliers, expected[k % 4].refine.inliers) << k;
+  for (int index = 0; index < kPairs; ++index) pairs.push_back(ScenePair(scene, index));
+  for (const RefineForm form : {RefineForm::kFull, RefineForm::kDepths, RefineForm::kBundle}) {
+    SCOPED_TRACE(RefineFormName(form));
+    EstimateOptions options = With("4pt-axis");
+    options.refine.form = form;
+    std::vector<MotionEstimate> expected;
+    for (const FramePair& pair : pairs) expected.push_back(EstimateMotion(options, pair));
+    constexpr int kCalls = 100;
+    std::vector<MotionEstimate> estimates(kCalls);
+    ParallelFor(kCalls, 8,
+                [&](int k) { estimates[k] = EstimateMotion(options, pairs[k % kPairs]); });
+    for (int k = 0; k < kCalls; ++k) {
+      const MotionEstimate& serial = expected[k % kPairs];
+      EXPECT_TRUE(SameBits(estimates[k].pose, serial.pose)) << k;
+      EXPECT_TRUE(SameBits(estimates[k].raw, serial.raw)) << k;
+      EXPECT_EQ(estimates[k].refine.final_cost, serial.refine.final_cost) << k;
+      EXPECT_EQ(estimates[k].refine.inliers, serial.refine.inliers) << k;
+    }
   }
 }
 

@@ -2,6 +2,7 @@
 // matches determine nothing.
 #include "rigel/refine/uncertainty.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -229,6 +230,74 @@ TEST(Uncertainty, ParallaxIsWhatTheRotationDoesNotExplain) {
   EXPECT_NEAR(ParallaxPercentilePx(moved, mask, sideways), 400.0 / std::hypot(1, 54.0 + 9.5), 0.2);
   mask.assign(100, 0);
   EXPECT_EQ(ParallaxPercentilePx(moved, mask, sideways), std::numeric_limits<double>::infinity());
+}
+
+// Forward motion of one camera: both epipoles are the principal point. Matches at d pixels from it
+// in both images have |gradient|^2 = 2 d^2 |F_2x2|^2 / 2, since F_2x2 turns by a right angle and
+// scales.
+TEST(EpipoleWeights, AreOneHalfAtTheDistanceThatTheHeaderStates) {
+  Rig rig;
+  RigCamera camera;
+  camera.intrinsics = {400, 400, 320, 240, 640, 480};
+  rig.cameras.push_back(camera);
+  Pose pose;
+  pose.t = {0, 0, -1};
+  const double noise = 0.5;
+  const double half = kEpipoleSigmas / std::sqrt(2.0) * noise;
+  std::vector<Match> matches;
+  for (const double d : {0.0, half * std::sqrt(2.0), 300.0}) {
+    Match m;
+    m.pixel1 = m.pixel2 = {320 + d, 240};
+    matches.push_back(m);
+  }
+  const GroupedMatches grouped(rig, matches);
+  std::vector<double> weights;
+  EpipoleWeights(grouped, pose, noise, &weights);
+  ASSERT_EQ(weights.size(), 3u);
+  EXPECT_EQ(weights[0], 0.0);
+  EXPECT_NEAR(weights[1], 0.5, 1e-9);
+  EXPECT_GT(weights[2], 0.99);
+  // E = 0: no match says anything.
+  EpipoleWeights(grouped, Pose(), noise, &weights);
+  EXPECT_EQ(weights, std::vector<double>(3, 0.0));
+}
+
+TEST(ReliableInformation, IsThatOfTheSampsonErrorsFarFromEpipoles) {
+  SceneOptions scene;
+  scene.motion = MotionPattern::kSideways;
+  const FramePair pair = ScenePair(scene, 1);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  const std::vector<char> mask(matches.size(), 1);
+  const Matrix6d plain = SampsonInformation(matches, mask, *pair.truth) / 0.25;
+  const Matrix6d reliable = ReliableInformation(matches, mask, *pair.truth, 0.5);
+  EXPECT_LT((plain - reliable).norm(), 0.01 * plain.norm());
+}
+
+// Camera 0 at time 1 is where camera 1 is at time 2, but for a few millimetres: that pair's
+// baseline is noise, and so is what it says of t.
+TEST(ReliableInformation, LeavesOutABaselineThatIsNoise) {
+  SceneOptions scene;
+  scene.inter_share = 0.5;
+  const FramePair any = ScenePair(scene, 2);
+  Pose truth;
+  truth.R = ExpSO3(DegToRad(1.0) * Eigen::Vector3d::UnitY());
+  truth.t = any.rig.cameras[1].s - truth.R * any.rig.cameras[0].s + Eigen::Vector3d(2e-3, 0, 0);
+  const FramePair pair = ScenePair(scene, 2, truth);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  const std::vector<char> mask(matches.size(), 1);
+  std::vector<char> others = mask;
+  for (const MatchGroup& group : matches.groups()) {
+    if (group.camera1 == 0 && group.camera2 == 1) {
+      std::fill(others.begin() + group.begin, others.begin() + group.begin + group.size, 0);
+    }
+  }
+  const Matrix6d all = ReliableInformation(matches, mask, truth, 0.5);
+  const Matrix6d without = ReliableInformation(matches, others, truth, 0.5);
+  EXPECT_LT((all - without).norm(), 1e-9 * without.norm());
+  const Matrix6d plain = SampsonInformation(matches, mask, truth) / 0.25;
+  const double plain_t = plain.bottomRightCorner<3, 3>().trace();
+  const double reliable_t = all.bottomRightCorner<3, 3>().trace();
+  EXPECT_GT(plain_t, 3.0 * reliable_t);
 }
 
 }  // namespace
