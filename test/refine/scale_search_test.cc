@@ -20,7 +20,7 @@ SceneOptions Scene() {
   return scene;
 }
 
-// Without the search one pair in twenty ends with |t| beyond any distance and a direction that is
+// Without the search one pair in twenty of this poor solver (its bias here is some degrees) ends with |t| beyond any distance and a direction that is
 // off by ten times its standard deviation.
 TEST(ScaleSearch, NoEstimateRunsAway) {
   int far = 0;
@@ -29,7 +29,7 @@ TEST(ScaleSearch, NoEstimateRunsAway) {
   for (int index = 0; index < kPairs; ++index) {
     const FramePair pair = ScenePair(Scene(), index);
     EstimateOptions options;
-    options.solver = "4pt";
+    options.solver = "4pt-approx";
     options.refine.noise_px = 0.5;
     const MotionEstimate estimate = EstimateMotion(options, pair);
     ASSERT_EQ(estimate.status, EstimateStatus::kSuccess) << index;
