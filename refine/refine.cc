@@ -11,12 +11,12 @@
 #include <utility>
 
 #include <ceres/ceres.h>
-#include <Eigen/Geometry>
 
 #include "rigel/core/angles.h"
 #include "rigel/core/frame_pair.h"
 #include "rigel/core/rays.h"
 #include "rigel/minimal/alignment.h"
+#include "rigel/refine/chance.h"
 #include "rigel/refine/motion_parameterization.h"
 #include "rigel/refine/prior_residuals.h"
 #include "rigel/refine/reprojection_cost.h"
@@ -181,7 +181,6 @@ class Refiner {
   int ChooseReference(const Pose& pose, RotationForm rotation, TranslationForm translation) const;
   bool Solve(bool scale_free, Pose* pose);
   bool Iterate(Pose* pose);
-  bool ExceedsChance() const;
   void FillUncertainty(const Pose& pose);
   bool Fail(Termination termination, const std::string& message);
 
@@ -475,39 +474,6 @@ bool Refiner::Iterate(Pose* pose) {
   return true;
 }
 
-// Could so many matches agree by chance? Random points fall into the band of the threshold around
-// an epipolar line with the probability q of its share of the image, a fit takes six of them for
-// free, and many fits were tried: the Chernoff bound on the binomial tail of the others has to beat
-// that number (a contrario, as Moisan and Stival, IJCV 2004).
-bool Refiner::ExceedsChance() const {
-  constexpr int kFree = 6;
-  constexpr double kLogTests = 16.0;  // ln of 10^7 tries
-  const int n = matches_.size() - kFree;
-  const int k = num_inliers_ - kFree;
-  if (n <= 0 || k <= 0) return false;
-  double q = 0.0;
-  for (const MatchGroup& group : matches_.groups()) {
-    const PinholeCamera& c = matches_.rig().cameras[group.camera2].intrinsics;
-    // Matches beyond the stated size say more of it than the size does.
-    double width = c.width > 0 ? c.width : std::max(2.0 * std::abs(c.cx), c.fx);
-    double height = c.height > 0 ? c.height : std::max(2.0 * std::abs(c.cy), c.fy);
-    Eigen::AlignedBox2d extent;
-    for (int m = group.begin; m < group.begin + group.size; ++m) {
-      extent.extend(matches_.matches()[m].pixel2);
-    }
-    width = std::max(width, extent.sizes().x());
-    height = std::max(height, extent.sizes().y());
-    const double band = 2.0 * options_.threshold_px * std::hypot(width, height);
-    q += std::min(1.0, band / (width * height)) * group.size / matches_.size();
-  }
-  const double share = k / static_cast<double>(n);
-  if (share <= q) return false;
-  const double divergence =
-      share * std::log(share / q) +
-      (share < 1.0 ? (1.0 - share) * std::log((1.0 - share) / (1.0 - q)) : 0.0);
-  return n * divergence > kLogTests;
-}
-
 void Refiner::FillUncertainty(const Pose& pose) {
   const Matrix6d information =
       options_.epipole_weights
@@ -537,7 +503,7 @@ void Refiner::FillUncertainty(const Pose& pose) {
   if (!summary_.translation_observable && !PriorIsExact()) set_covariance(FullBasis(pose, true));
   summary_.rotation_observable = summary_.covariance.has_value() &&
                                  RadToDeg(summary_.rotation_sigma) <= kRotationObservableDeg;
-  summary_.exceeds_chance = ExceedsChance();
+  summary_.exceeds_chance = ExceedsChance(matches_, num_inliers_, options_.threshold_px);
   if (!summary_.exceeds_chance) {
     summary_.rotation_observable = false;
     summary_.translation_observable = false;

@@ -1,0 +1,39 @@
+#include "rigel/refine/chance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace rigel {
+
+bool ExceedsChance(const GroupedMatches& matches, int num_inliers, double threshold_px) {
+  constexpr int kFree = 6;
+  constexpr double kLogTests = 16.0;  // ln of 10^7 tries
+  const int n = matches.size() - kFree;
+  const int k = num_inliers - kFree;
+  if (n <= 0 || k <= 0) return false;
+  double q = 0.0;
+  for (const MatchGroup& group : matches.groups()) {
+    const PinholeCamera& c = matches.rig().cameras[group.camera2].intrinsics;
+    // Matches beyond the stated size say more of it than the size does.
+    double width = c.width > 0 ? c.width : std::max(2.0 * std::abs(c.cx), c.fx);
+    double height = c.height > 0 ? c.height : std::max(2.0 * std::abs(c.cy), c.fy);
+    Eigen::AlignedBox2d extent;
+    for (int m = group.begin; m < group.begin + group.size; ++m) {
+      extent.extend(matches.matches()[m].pixel2);
+    }
+    width = std::max(width, extent.sizes().x());
+    height = std::max(height, extent.sizes().y());
+    const double band = 2.0 * threshold_px * std::hypot(width, height);
+    q += std::min(1.0, band / (width * height)) * group.size / matches.size();
+  }
+  const double share = k / static_cast<double>(n);
+  if (share <= q) return false;
+  const double divergence =
+      share * std::log(share / q) +
+      (share < 1.0 ? (1.0 - share) * std::log((1.0 - share) / (1.0 - q)) : 0.0);
+  return n * divergence > kLogTests;
+}
+
+}  // namespace rigel
