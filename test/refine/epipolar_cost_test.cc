@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "rigel/core/epipolar.h"
+#include "rigel/test/refine/jet_geometry.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -142,18 +143,6 @@ Row Evaluate(const ceres::CostFunction& cost, const Blocks& blocks) {
   }
   EXPECT_TRUE(cost.Evaluate(blocks.Pointers().data(), &row.residual, jacobians.data()));
   return row;
-}
-
-template <class T>
-using Vector3 = Eigen::Matrix<T, 3, 1>;
-template <class T>
-using Matrix3 = Eigen::Matrix<T, 3, 3>;
-
-template <class T>
-Matrix3<T> Cross(const Vector3<T>& v) {
-  Matrix3<T> m;
-  m << T(0), -v.z(), v.y(), v.z(), T(0), -v.x(), -v.y(), v.x(), T(0);
-  return m;
 }
 
 // The residual from the header's words: uncentred calibration matrices, rotation matrices as

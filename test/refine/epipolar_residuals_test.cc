@@ -11,6 +11,7 @@
 
 #include "rigel/core/epipolar.h"
 #include "rigel/core/rays.h"
+#include "rigel/test/refine/jet_geometry.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -18,18 +19,6 @@ namespace {
 
 constexpr ResidualKind kKinds[] = {ResidualKind::kSampson, ResidualKind::kAngular,
                                    ResidualKind::kAlgebraic};
-
-template <class T>
-using Vector3 = Eigen::Matrix<T, 3, 1>;
-template <class T>
-using Matrix3 = Eigen::Matrix<T, 3, 3>;
-
-template <class T>
-Matrix3<T> Cross(const Vector3<T>& v) {
-  Matrix3<T> m;
-  m << T(0), -v.z(), v.y(), v.z(), T(0), -v.x(), -v.y(), v.x(), T(0);
-  return m;
-}
 
 // x_j . (b x R x_i) for rays in the camera frames, of any length.
 template <class T>

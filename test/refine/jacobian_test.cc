@@ -22,6 +22,7 @@
 #include "rigel/refine/motion_parameterization.h"
 #include "rigel/refine/prior_residuals.h"
 #include "rigel/refine/reprojection_cost.h"
+#include "rigel/test/refine/jet_geometry.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -64,18 +65,6 @@ constexpr Form kForms[] = {
     {RotationForm::kAngle, TranslationForm::kPlanarDepths, "angle, planar depths", 2},
     {RotationForm::kAngle, TranslationForm::kPlanarDepth, "angle, planar depth", 1},
 };
-
-template <class T>
-using Vector3 = Eigen::Matrix<T, 3, 1>;
-template <class T>
-using Matrix3 = Eigen::Matrix<T, 3, 3>;
-
-template <class T>
-Matrix3<T> Cross(const Vector3<T>& v) {
-  Matrix3<T> m;
-  m << T(0), -v.z(), v.y(), v.z(), T(0), -v.x(), -v.y(), v.x(), T(0);
-  return m;
-}
 
 // The power series of the matrix exponential with halving and squaring: no angle, no quotient,
 // nothing special at zero or at a half turn.
@@ -553,20 +542,6 @@ TEST(Jacobian, EpipolarResidualsMatchAutomaticDifferentiation) {
     derivatives[kind].Expect(std::string(kKindNames[kind]) + "_derivatives", kTolerance,
                              kPoints * 18 * 9);
   }
-}
-
-MotionPrior FullPrior(Random* random) {
-  MotionPrior prior;
-  prior.gravity1 = random->UnitVector3();
-  prior.gravity2 = random->UnitVector3();
-  prior.axis = random->UnitVector3();
-  prior.normal = random->UnitVector3();
-  prior.gravity_sigma = random->Uniform(1e-3, 1e-1);
-  prior.axis_sigma = random->Uniform(1e-3, 1e-1);
-  prior.normal_sigma = random->Uniform(1e-3, 1e-1);
-  prior.distance = random->Uniform(0.5, 2.0);
-  prior.distance_sigma = random->Uniform(1e-3, 1e-1);
-  return prior;
 }
 
 // By the perturbation R <- Exp(d) R, t <- t + e; each row relative to itself.

@@ -10,20 +10,6 @@
 namespace rigel {
 namespace {
 
-MotionPrior FullPrior(Random* random) {
-  MotionPrior prior;
-  prior.gravity1 = random->UnitVector3();
-  prior.gravity2 = random->UnitVector3();
-  prior.axis = random->UnitVector3();
-  prior.normal = random->UnitVector3();
-  prior.gravity_sigma = random->Uniform(1e-3, 1e-1);
-  prior.axis_sigma = random->Uniform(1e-3, 1e-1);
-  prior.normal_sigma = random->Uniform(1e-3, 1e-1);
-  prior.distance = random->Uniform(0.5, 2.0);
-  prior.distance_sigma = random->Uniform(1e-3, 1e-1);
-  return prior;
-}
-
 Pose RandomPose(Random* random) {
   Pose pose;
   pose.R = ExpSO3(random->Uniform(0.0, 3.1) * random->UnitVector3());

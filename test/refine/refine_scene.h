@@ -58,6 +58,21 @@ inline Pose StartNear(const Pose& truth, double degrees, double share, Random* r
   return Perturbed(truth, d);
 }
 
+// Unrelated directions and a distance, each with a sigma.
+inline MotionPrior FullPrior(Random* random) {
+  MotionPrior prior;
+  prior.gravity1 = random->UnitVector3();
+  prior.gravity2 = random->UnitVector3();
+  prior.axis = random->UnitVector3();
+  prior.normal = random->UnitVector3();
+  prior.gravity_sigma = random->Uniform(1e-3, 1e-1);
+  prior.axis_sigma = random->Uniform(1e-3, 1e-1);
+  prior.normal_sigma = random->Uniform(1e-3, 1e-1);
+  prior.distance = random->Uniform(0.5, 2.0);
+  prior.distance_sigma = random->Uniform(1e-3, 1e-1);
+  return prior;
+}
+
 // Three cameras of unlike focal lengths, fx != fy, anywhere on the body.
 inline Rig MixedRig(Random* random) {
   Rig rig;

@@ -20,8 +20,8 @@ SceneOptions Scene() {
   return scene;
 }
 
-// Without the search one pair in twenty of this poor solver (its bias here is some degrees) ends with |t| beyond any distance and a direction that is
-// off by ten times its standard deviation.
+// Without the search one pair in twenty of this poor solver (its bias here is some degrees) ends
+// with |t| beyond any distance and a direction that is off by ten times its standard deviation.
 TEST(ScaleSearch, NoEstimateRunsAway) {
   int far = 0;
   double worst = 0.0;
