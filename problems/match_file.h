@@ -59,7 +59,7 @@ std::string FormatMatches(const FramePair& pair);
 // other, a sequence name with a blank, ...); nothing is then written. pair.name is not stored.
 bool WriteMatchFile(const std::string& path, const FramePair& pair, std::string* error);
 
-// A path (or a message that holds one) as one line: control characters as \xNN.
+// A path (or a message that holds one) as one line: control characters in hexadecimal.
 std::string PrintablePath(const std::string& path);
 
 // Expands a comma-separated list of files and directories, in the order given. A directory means
