@@ -152,6 +152,7 @@ std::string EstimateJson(const std::vector<FramePair>& pairs,
             rows.push_back(row);
           }
           entry["covariance"] = rows;
+          if (!r.weakest_direction.empty()) entry["weakest_direction"] = r.weakest_direction;
         }
         PutFinite("relative_scale_sd", r.relative_scale_sigma, &entry);
       }

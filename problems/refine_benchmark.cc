@@ -107,22 +107,32 @@ std::vector<RefineBenchmarkRow> BenchmarkRefinement(const RefineBenchmarkOptions
   for (const LossKind loss : {LossKind::kNone, LossKind::kCauchy}) {
     rows.push_back(Run("small engine", LossName(loss), problems,
                        [loss](const Problem& problem, Pose* pose, int* iterations) {
-                         const EpipolarResiduals residuals(problem.matches, ResidualKind::kSampson);
-                         SmallEngine engine(residuals);
+                         SmallEngine engine(problem.matches);
                          const std::vector<char> mask(problem.matches.size(), 1);
                          SmallEngineOptions small;
                          small.loss = loss;
                          small.loss_scale = 4.0 * kNoisePx;
                          small.max_num_iterations = 20;
+                         small.tolerance = 1e-12;
                          const bool ok = engine.Minimize(small, mask, pose);
                          *iterations = engine.num_iterations();
                          return ok;
                        }));
-    for (const RefineForm form : {RefineForm::kFull, RefineForm::kDepths, RefineForm::kBundle}) {
-      rows.push_back(Run(std::string("Refine() ") + RefineFormName(form), LossName(loss), problems,
-                         [loss, form](const Problem& problem, Pose* pose, int* iterations) {
+    struct Call {
+      RefineForm form;
+      RefineEngine engine;
+      const char* name;
+    };
+    for (const Call& call :
+         {Call{RefineForm::kFull, RefineEngine::kAuto, "Refine() full"},
+          Call{RefineForm::kDepths, RefineEngine::kAuto, "Refine() depths"},
+          Call{RefineForm::kFull, RefineEngine::kCeres, "Refine() full, ceres::Problem"},
+          Call{RefineForm::kBundle, RefineEngine::kCeres, "Refine() bundle, ceres::Problem"}}) {
+      rows.push_back(Run(call.name, LossName(loss), problems,
+                         [loss, call](const Problem& problem, Pose* pose, int* iterations) {
                            RefineOptions refine;
-                           refine.form = form;
+                           refine.form = call.form;
+                           refine.engine = call.engine;
                            refine.loss = loss;
                            refine.noise_px = kNoisePx;
                            // A start that is off by a degree is off by 7 pixels.

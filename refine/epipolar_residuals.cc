@@ -7,6 +7,38 @@
 
 namespace rigel {
 
+void LinearizeGroups(const GroupedMatches& matches, ResidualKind kind, const Pose& pose,
+                     const MotionBasis* basis, std::vector<GroupLinearization>* groups) {
+  groups->resize(matches.groups().size());
+  for (size_t g = 0; g < matches.groups().size(); ++g) {
+    const MatchGroup& group = matches.groups()[g];
+    const RigCamera& c1 = matches.rig().cameras[group.camera1];
+    const RigCamera& c2 = matches.rig().cameras[group.camera2];
+    GroupLinearization& linear = (*groups)[g];
+    const Eigen::Vector3d Rs = pose.R * c1.s;
+    const Eigen::Matrix3d RQ = pose.R * c1.Q;
+    const Eigen::Vector3d b = Rs + pose.t - c2.s;
+    Eigen::Matrix3d left = c2.Q.transpose();
+    Eigen::Matrix3d right = RQ;
+    if (kind == ResidualKind::kSampson) {
+      left.row(0) /= c2.intrinsics.fx;
+      left.row(1) /= c2.intrinsics.fy;
+      right.col(0) /= c1.intrinsics.fx;
+      right.col(1) /= c1.intrinsics.fy;
+    }
+    linear.F = left * Skew(b) * right;
+    constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
+    linear.rounding2 = kRounding * kRounding * linear.F.squaredNorm();
+    if (basis == nullptr) continue;
+    for (int m = 0; m < basis->cols(); ++m) {
+      // d([b]x R) = ([db]x + [b]x [w]x) R with db = w x R s + e.
+      const Eigen::Vector3d w = basis->block<3, 1>(0, m);
+      const Eigen::Vector3d db = w.cross(Rs) + basis->block<3, 1>(3, m);
+      linear.dF[m] = left * (Skew(db) + Skew(b) * Skew(w)) * right;
+    }
+  }
+}
+
 EpipolarResiduals::EpipolarResiduals(const GroupedMatches& matches, ResidualKind kind)
     : matches_(&matches), kind_(kind) {
   const int n = matches.size();
@@ -29,38 +61,6 @@ EpipolarResiduals::EpipolarResiduals(const GroupedMatches& matches, ResidualKind
         p1_[k] = c1.Normalize(m.pixel1).normalized();
         p2_[k] = c2.Normalize(m.pixel2).normalized();
       }
-    }
-  }
-}
-
-void EpipolarResiduals::Linearize(const Pose& pose, const MotionBasis* basis,
-                                  std::vector<GroupLinearization>* groups) const {
-  groups->resize(matches_->groups().size());
-  for (size_t g = 0; g < matches_->groups().size(); ++g) {
-    const MatchGroup& group = matches_->groups()[g];
-    const RigCamera& c1 = matches_->rig().cameras[group.camera1];
-    const RigCamera& c2 = matches_->rig().cameras[group.camera2];
-    GroupLinearization& linear = (*groups)[g];
-    const Eigen::Vector3d Rs = pose.R * c1.s;
-    const Eigen::Matrix3d RQ = pose.R * c1.Q;
-    const Eigen::Vector3d b = Rs + pose.t - c2.s;
-    Eigen::Matrix3d left = c2.Q.transpose();
-    Eigen::Matrix3d right = RQ;
-    if (kind_ == ResidualKind::kSampson) {
-      left.row(0) /= c2.intrinsics.fx;
-      left.row(1) /= c2.intrinsics.fy;
-      right.col(0) /= c1.intrinsics.fx;
-      right.col(1) /= c1.intrinsics.fy;
-    }
-    linear.F = left * Skew(b) * right;
-    constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
-    linear.rounding2 = kRounding * kRounding * linear.F.squaredNorm();
-    if (basis == nullptr) continue;
-    for (int m = 0; m < basis->cols(); ++m) {
-      // d([b]x R) = ([db]x + [b]x [w]x) R with db = w x R s + e.
-      const Eigen::Vector3d w = basis->block<3, 1>(0, m);
-      const Eigen::Vector3d db = w.cross(Rs) + basis->block<3, 1>(3, m);
-      linear.dF[m] = left * (Skew(db) + Skew(b) * Skew(w)) * right;
     }
   }
 }

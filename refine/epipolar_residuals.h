@@ -31,6 +31,11 @@ struct GroupLinearization {
   double rounding2;  // times |p|^2: what rounding can make of a squared gradient of zero
 };
 
+// Once a motion: fills one linearization a group of the matches. `basis` gives the parameters'
+// derivatives; null if no Jacobian is wanted.
+void LinearizeGroups(const GroupedMatches& matches, ResidualKind kind, const Pose& pose,
+                     const MotionBasis* basis, std::vector<GroupLinearization>* groups);
+
 class EpipolarResiduals {
  public:
   // `matches` must outlive this object.
@@ -40,10 +45,11 @@ class EpipolarResiduals {
   int size() const { return static_cast<int>(group_of_.size()); }
   int num_groups() const { return static_cast<int>(matches_->groups().size()); }
 
-  // Once a motion: fills one linearization a group. `basis` gives the parameters' derivatives; null
-  // if no Jacobian is wanted.
+  // LinearizeGroups() of these matches.
   void Linearize(const Pose& pose, const MotionBasis* basis,
-                 std::vector<GroupLinearization>* groups) const;
+                 std::vector<GroupLinearization>* groups) const {
+    LinearizeGroups(*matches_, kind_, pose, basis, groups);
+  }
 
   // Residual of the match at grouped position k, and its derivative by the `num_parameters` columns
   // of the basis, `stride` doubles apart; `jacobian` may be null.

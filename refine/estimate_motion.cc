@@ -26,8 +26,7 @@ class FramePairSolver {
         subset_(matches.rig(), EvenSubset(matches.matches(), kSubset)),
         prepared_(matches.rig(), matches.matches(), alignment),
         sampler_(matches.groups(), solver.sampling, solver.sample_size),
-        residuals_(matches, ResidualKind::kSampson),
-        engine_(residuals_),
+        engine_(matches),
         threshold_px_(threshold_px) {
     for (const MatchGroup& group : matches.groups()) {
       if (group.camera1 != group.camera2) intra_only_ = false;
@@ -104,7 +103,6 @@ class FramePairSolver {
   GroupedMatches subset_;
   PreparedMatches prepared_;
   Sampler sampler_;
-  EpipolarResiduals residuals_;
   mutable SmallEngine engine_;
   double threshold_px_;
   mutable std::vector<double> squared_errors_;
@@ -161,6 +159,11 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
     return Refused(EstimateStatus::kInvalidInput, error);
   }
   const SolverInfo& solver = *FindSolver(options.solver);
+  if (options.refine_motion && options.refine.scale == ScaleMode::kFixed &&
+      !(pair.prior.distance.value_or(0.0) > 0)) {
+    return Refused(EstimateStatus::kInvalidInput,
+                   "|t| is to be held, and the prior states no positive distance");
+  }
   Alignment alignment;
   if (!MakeAlignment(pair.prior, solver.prior, &alignment, &error)) {
     return Refused(EstimateStatus::kInvalidInput, options.solver + ": " + error);

@@ -16,6 +16,7 @@ struct EstimateOptions {
   std::string solver = "4pt-axis";  // a name of SolverCatalogue()
   RansacOptions ransac;
   bool refine_motion = true;
+  // ScaleMode::kFixed needs the prior's distance: the |t| that RANSAC finds may be arbitrary.
   // The solver's prior replaces refine.prior_kind; refine.threshold_px is taken from ransac.
   RefineOptions refine;
 

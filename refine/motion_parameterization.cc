@@ -22,6 +22,7 @@ bool MotionParameterization::Set(RotationForm rotation, TranslationForm translat
   start_ = start;
   alignment_ = alignment;
   reference_ = reference;
+  holds_norm_ = false;
   rotation_size_ = rotation == RotationForm::kFree ? 3 : 1;
   if (rotation == RotationForm::kAngle) {
     start_angle_ = alignment.NearestAngle(start.R);
@@ -58,20 +59,22 @@ bool MotionParameterization::Set(RotationForm rotation, TranslationForm translat
     case TranslationForm::kDepths:
     case TranslationForm::kDepth:
     case TranslationForm::kPlanarDepths:
-    case TranslationForm::kPlanarDepth: {
+    case TranslationForm::kPlanarDepth:
+    case TranslationForm::kDepthsOnSphere:
+    case TranslationForm::kPlanarDepthsOnSphere: {
       Depths depths;
       if (!TriangulateDepths(start_, reference, &depths)) return false;
       // From distances to the camera to the paper's depths from the feet: l = d + s.x.
       start_depths_.x() = depths.d1 + reference.ray1.s.dot(reference.ray1.x);
       start_depths_.y() = depths.d2 + reference.ray2.s.dot(reference.ray2.x);
-      depth_basis_.setZero();
-      if (translation == TranslationForm::kDepths) {
-        translation_size_ = 2;
-        depth_basis_.setIdentity();
-      } else if (translation == TranslationForm::kDepth) {
-        translation_size_ = 1;
-        depth_basis_(1, 0) = 1.0;
-      } else {
+      depth_basis_.setIdentity();
+      translation_size_ = 2;
+      holds_norm_ = translation == TranslationForm::kDepthsOnSphere ||
+                    translation == TranslationForm::kPlanarDepthsOnSphere;
+      const bool planar = translation == TranslationForm::kPlanarDepths ||
+                          translation == TranslationForm::kPlanarDepth ||
+                          translation == TranslationForm::kPlanarDepthsOnSphere;
+      if (planar) {
         // n.(m2 + l2 x2) - n'.(m1 + l1 x1) = 0 with n' = R'n: a line in (l1, l2). The point of it
         // nearest to the start, and the direction along it; nothing is divided by n.x2.
         const Eigen::Vector3d normal1 = alignment.A1.row(1).transpose();
@@ -81,13 +84,38 @@ bool MotionParameterization::Set(RotationForm rotation, TranslationForm translat
         const double norm2 = line.squaredNorm();
         if (!(norm2 > 1e-18)) return false;  // the reference lies on the horizon
         start_depths_ -= line * ((line.dot(start_depths_) + offset) / norm2);
-        translation_size_ = translation == TranslationForm::kPlanarDepths ? 1 : 0;
+        translation_size_ = translation == TranslationForm::kPlanarDepth ? 0 : 1;
         depth_basis_.col(0) = Eigen::Vector2d(line.y(), -line.x()) / std::sqrt(norm2);
+      } else if (translation == TranslationForm::kDepth) {
+        translation_size_ = 1;
+        depth_basis_.col(0) = Eigen::Vector2d::UnitY();
+      }
+      if (holds_norm_) {
+        norm_ = start.t.norm();
+        if (!(norm_ > 0)) return false;
+        const Eigen::Vector3d t =
+            TranslationFromDepths(start_.R, reference, start_depths_.x(), start_depths_.y());
+        const Eigen::Vector2d gradient = DepthDirections(start_.R).transpose() * t;
+        // Planar depths have one direction; both depths move along the level line of |t|.
+        across_ = planar ? Eigen::Vector2d(depth_basis_.col(0) *
+                                           (gradient.dot(depth_basis_.col(0)) < 0 ? -1.0 : 1.0))
+                         : Eigen::Vector2d(gradient / gradient.norm());
+        if (!(across_.dot(gradient) > 1e-9 * norm_)) return false;
+        depth_basis_.col(0) = Eigen::Vector2d(across_.y(), -across_.x());
+        --translation_size_;
       }
       break;
     }
   }
   return true;
+}
+
+// d t / d(l1, l2) of the reference.
+Eigen::Matrix<double, 3, 2> MotionParameterization::DepthDirections(
+    const Eigen::Matrix3d& R) const {
+  Eigen::Matrix<double, 3, 2> directions;
+  directions << -(R * reference_.ray1.x), reference_.ray2.x;
+  return directions;
 }
 
 void MotionParameterization::Evaluate(const double* parameters, Pose* pose,
@@ -150,19 +178,36 @@ void MotionParameterization::Evaluate(const double* parameters, Pose* pose,
     case TranslationForm::kDepths:
     case TranslationForm::kDepth:
     case TranslationForm::kPlanarDepths:
-    case TranslationForm::kPlanarDepth: {
+    case TranslationForm::kPlanarDepth:
+    case TranslationForm::kDepthsOnSphere:
+    case TranslationForm::kPlanarDepthsOnSphere: {
+      const Eigen::Matrix<double, 3, 2> by_depth = DepthDirections(pose->R);
       Eigen::Vector2d l = start_depths_;
       for (int k = 0; k < translation_size_; ++k) l += depth_basis_.col(k) * p[k];
       pose->t = TranslationFromDepths(pose->R, reference_, l.x(), l.y());
+      const Eigen::Vector3d v = by_depth * across_;
+      if (holds_norm_) {
+        // |t + q v| = norm, the solution on the side of the start; the nearest where there is none.
+        const double b = pose->t.dot(v);
+        const double excess = pose->t.squaredNorm() - norm_ * norm_;
+        const double root = std::sqrt(std::max(0.0, b * b - v.squaredNorm() * excess));
+        const double q = (root - b) / v.squaredNorm();
+        l += q * across_;
+        pose->t += q * v;
+      }
       if (basis != nullptr) {
         const Eigen::Vector3d arm = pose->R * (reference_.ray1.Foot() + l.x() * reference_.ray1.x);
         // t = ... - arm, and the arm turns with R.
         const Eigen::Matrix3d turn = Skew(arm);
         basis->block(3, 0, 3, rotation_size_) = turn * basis->block(0, 0, 3, rotation_size_);
-        Eigen::Matrix<double, 3, 2> by_depth;
-        by_depth << -(pose->R * reference_.ray1.x), reference_.ray2.x;
         for (int k = 0; k < translation_size_; ++k) {
           basis->block<3, 1>(3, column + k) = by_depth * depth_basis_.col(k);
+        }
+        const double slope = pose->t.dot(v);
+        if (holds_norm_ && slope > 0) {
+          for (int k = 0; k < size(); ++k) {
+            basis->block<3, 1>(3, k) -= v * (pose->t.dot(basis->block<3, 1>(3, k)) / slope);
+          }
         }
       }
       break;

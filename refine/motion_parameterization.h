@@ -35,6 +35,10 @@ enum class TranslationForm {
   kDepth,         // l2 of the reference, l1 as at the start (it fixes the scale): 1
   kPlanarDepths,  // l1, l2 with t in the plane (paper eq. h4): 1
   kPlanarDepth,   // the same with the scale fixed: 0
+  // As kDepths and kPlanarDepths with |t| as at the start: 1 and 0. Where the rotation lets no
+  // depths of the reference have that |t|, the nearest; far from any start that has some.
+  kDepthsOnSphere,
+  kPlanarDepthsOnSphere,
 };
 
 class MotionParameterization {
@@ -42,8 +46,8 @@ class MotionParameterization {
   // `start` is projected onto the form where it is not of it: the nearest angle, the plane, the
   // depths of the point closest to both rays of the reference. `alignment` is used by kAngle and
   // the planar forms, `reference` (rays in the body frames) by the depth forms. False if the
-  // start has no place in the form: |t| = 0 on a sphere, circle or with inverse scale, a reference
-  // with parallel rays.
+  // start has no place in the form: |t| = 0 where it is held or inverted, a reference
+  // with parallel rays, or one whose depths do not change |t| where that is held.
   bool Set(RotationForm rotation, TranslationForm translation, const Pose& start,
            const Alignment& alignment, const RayPair& reference);
 
@@ -53,6 +57,8 @@ class MotionParameterization {
   void Evaluate(const double* parameters, Pose* pose, MotionBasis* basis) const;
 
  private:
+  Eigen::Matrix<double, 3, 2> DepthDirections(const Eigen::Matrix3d& R) const;
+
   RotationForm rotation_ = RotationForm::kFree;
   TranslationForm translation_ = TranslationForm::kFree;
   int rotation_size_ = 3;
@@ -65,10 +71,13 @@ class MotionParameterization {
   double norm_ = 0.0;
   Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 3, 2> tangent_ = Eigen::Matrix<double, 3, 2>::Zero();
-  // Depth forms: (l1, l2) = start_depths_ + depth_basis_ parameters.
+  // Depth forms: (l1, l2) = start_depths_ + depth_basis_ parameters, and where |t| is norm_, plus
+  // the multiple of across_ that makes it so.
   RayPair reference_;
   Eigen::Vector2d start_depths_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d depth_basis_ = Eigen::Matrix2d::Zero();
+  bool holds_norm_ = false;
+  Eigen::Vector2d across_ = Eigen::Vector2d::Zero();
 };
 
 }  // namespace rigel

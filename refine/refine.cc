@@ -22,6 +22,7 @@
 #include "rigel/refine/reprojection_cost.h"
 #include "rigel/refine/scale_search.h"
 #include "rigel/refine/sign_and_scale.h"
+#include "rigel/refine/small_engine.h"
 
 namespace rigel {
 namespace {
@@ -153,7 +154,8 @@ class Refiner {
       : options_(options),
         matches_(matches),
         prior_(prior),
-        residuals_(matches, options.residual) {}
+        residuals_(matches, options.residual),
+        engine_(matches) {}
 
   RefineSummary Run(Pose* pose);
 
@@ -180,6 +182,11 @@ class Refiner {
   }
   int ChooseReference(const Pose& pose, RotationForm rotation, TranslationForm translation) const;
   bool Solve(bool scale_free, Pose* pose);
+  bool SolveSmall(const MotionParameterization& parameterization, const PriorResiduals& prior,
+                  Pose* pose);
+  bool SolveCeres(const MotionParameterization& parameterization, const PriorResiduals& prior,
+                  Pose* pose);
+  void TakeResult(double initial_cost, double final_cost, int iterations, bool converged);
   bool Iterate(Pose* pose);
   void FillUncertainty(const Pose& pose);
   bool Fail(Termination termination, const std::string& message);
@@ -188,10 +195,12 @@ class Refiner {
   const GroupedMatches& matches_;
   const MotionPrior& prior_;
   const EpipolarResiduals residuals_;
+  SmallEngine engine_;
   Alignment alignment_;
   std::vector<double> squared_errors_;
   std::vector<char> mask_, previous_mask_;  // grouped order
   std::vector<double> weights_;             // see SetWeights()
+  std::vector<double> fit_weights_;         // of the inliers; 0 for the rest
   int num_inliers_ = 0;
   double noise_px_ = 1.0;
   bool scale_free_ = true;
@@ -279,13 +288,19 @@ void Refiner::ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotat
   const bool prior_exact = PriorIsExact();
   const bool planar = prior_exact && options_.prior_kind == PriorKind::kPlanar;
   *rotation = prior_exact ? RotationForm::kAngle : RotationForm::kFree;
+  // At t = 0 there is no length to hold.
+  const bool free = scale_free || !(pose.t.norm() > 0);
   if (HasReference()) {
-    *translation =
-        planar ? (scale_free ? TranslationForm::kPlanarDepths : TranslationForm::kPlanarDepth)
-               : (scale_free ? TranslationForm::kDepths : TranslationForm::kDepth);
+    const bool on_sphere = options_.scale == ScaleMode::kFixed;
+    if (free) {
+      *translation = planar ? TranslationForm::kPlanarDepths : TranslationForm::kDepths;
+    } else if (planar) {
+      *translation =
+          on_sphere ? TranslationForm::kPlanarDepthsOnSphere : TranslationForm::kPlanarDepth;
+    } else {
+      *translation = on_sphere ? TranslationForm::kDepthsOnSphere : TranslationForm::kDepth;
+    }
   } else {
-    // At t = 0 there is no direction to move on a sphere.
-    const bool free = scale_free || !(pose.t.norm() > 0);
     *translation = planar ? (free ? TranslationForm::kPlane : TranslationForm::kCircle)
                           : (free ? TranslationForm::kFree : TranslationForm::kSphere);
   }
@@ -356,10 +371,50 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
                                               std::to_string(size) + " free parameters");
   }
 
-  std::array<double, 6> parameters = {0, 0, 0, 0, 0, 0};
-  SharedEvaluation shared(parameterization, residuals_, parameters.data());
   const PriorResiduals prior =
       options_.use_prior ? PriorResiduals(prior_, options_.prior_kind, *pose) : PriorResiduals();
+  const bool small = options_.engine == RefineEngine::kAuto &&
+                     options_.residual == ResidualKind::kSampson &&
+                     options_.form != RefineForm::kBundle;
+  return small ? SolveSmall(parameterization, prior, pose)
+               : SolveCeres(parameterization, prior, pose);
+}
+
+void Refiner::TakeResult(double initial_cost, double final_cost, int iterations, bool converged) {
+  if (summary_.initial_cost < 0) summary_.initial_cost = initial_cost;
+  summary_.final_cost = final_cost;
+  summary_.num_iterations += iterations;
+  summary_.termination = converged ? Termination::kConverged : Termination::kIterationLimit;
+}
+
+bool Refiner::SolveSmall(const MotionParameterization& parameterization,
+                         const PriorResiduals& prior, Pose* pose) {
+  SmallEngineOptions small;
+  small.loss = options_.loss;
+  small.loss_scale = options_.loss_scale_sigmas * noise_px_;
+  small.max_num_iterations = options_.max_num_iterations;
+  // The last step is some 1e-5 standard deviations long.
+  small.tolerance = 1e-12;
+  std::array<double, 6> parameters = {0, 0, 0, 0, 0, 0};
+  fit_weights_.resize(weights_.size());
+  for (size_t k = 0; k < weights_.size(); ++k) fit_weights_[k] = mask_[k] ? weights_[k] : 0.0;
+  const SmallEngineSummary result =
+      engine_.Solve(small, parameterization, fit_weights_, prior, noise_px_, parameters.data());
+  Pose refined;
+  parameterization.Evaluate(parameters.data(), &refined, nullptr);
+  if (!result.usable || !refined.AllFinite()) {
+    return Fail(Termination::kDegenerate, "the least-squares solver found no usable solution");
+  }
+  TakeResult(result.initial_cost, result.final_cost, result.num_iterations, result.converged);
+  *pose = refined;
+  return true;
+}
+
+bool Refiner::SolveCeres(const MotionParameterization& parameterization,
+                         const PriorResiduals& prior, Pose* pose) {
+  const int size = parameterization.size();
+  std::array<double, 6> parameters = {0, 0, 0, 0, 0, 0};
+  SharedEvaluation shared(parameterization, residuals_, parameters.data());
   std::deque<MatchCost> costs;
   PriorCost prior_cost(prior, shared, noise_px_, size);
   // The algebraic residual is in metres: a scale in pixels means nothing to it.
@@ -419,12 +474,9 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
   if (!ceres_summary.IsSolutionUsable() || !result.AllFinite()) {
     return Fail(Termination::kDegenerate, "the least-squares solver found no usable solution");
   }
-  if (summary_.initial_cost < 0) summary_.initial_cost = ceres_summary.initial_cost;
-  summary_.final_cost = ceres_summary.final_cost;
-  summary_.num_iterations += static_cast<int>(ceres_summary.iterations.size());
-  summary_.termination = ceres_summary.termination_type == ceres::NO_CONVERGENCE
-                             ? Termination::kIterationLimit
-                             : Termination::kConverged;
+  TakeResult(ceres_summary.initial_cost, ceres_summary.final_cost,
+             static_cast<int>(ceres_summary.iterations.size()),
+             ceres_summary.termination_type != ceres::NO_CONVERGENCE);
   *pose = result;
   return true;
 }
@@ -501,6 +553,9 @@ void Refiner::FillUncertainty(const Pose& pose) {
       (std::isfinite(summary_.parallax_px) ? summary_.parallax_px > summary_.parallax_limit_px
                                            : summary_.relative_scale_sigma * kParallaxSigmas < 1.0);
   if (!summary_.translation_observable && !PriorIsExact()) set_covariance(FullBasis(pose, true));
+  if (summary_.covariance) {
+    summary_.weakest_direction = WeakestDirection(*summary_.covariance, pose.t);
+  }
   summary_.rotation_observable = summary_.covariance.has_value() &&
                                  RadToDeg(summary_.rotation_sigma) <= kRotationObservableDeg;
   summary_.exceeds_chance = ExceedsChance(matches_, num_inliers_, options_.threshold_px);
@@ -659,7 +714,7 @@ std::string RefineSummary::ObservabilityReport() const {
   }
   std::snprintf(text, sizeof(text), "all observable, standard deviation of |t| %.2f percent",
                 100 * relative_scale_sigma);
-  return text;
+  return weakest_direction.empty() ? std::string(text) : text + ("; weakest: " + weakest_direction);
 }
 
 RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,

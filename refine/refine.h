@@ -43,6 +43,12 @@ enum class ScaleMode {
 // likelier outliers. A gate at 3 sigma costs 2 to 3 percent of the accuracy.
 inline constexpr double kGateSigmas = 3.75;
 
+// What the least squares run on. Both have the same minimum.
+enum class RefineEngine {
+  kAuto,   // the small engine (small_engine.h) where it can: Sampson residuals, not kBundle
+  kCeres,  // a ceres::Problem
+};
+
 struct RefineOptions {
   RefineForm form = RefineForm::kFull;
   ResidualKind residual = ResidualKind::kSampson;
@@ -59,6 +65,8 @@ struct RefineOptions {
   LossKind loss = LossKind::kCauchy;
   // Scale of the loss in units of the image noise (given, or estimated from the start); > 0.
   double loss_scale_sigmas = 4.0;
+
+  RefineEngine engine = RefineEngine::kAuto;
 
   // > 0; matches with a larger Sampson error are left out. Where the noise is given, nothing below
   // kGateSigmas of it is.
@@ -102,6 +110,7 @@ struct RefineSummary {
   // translation may be. The depth forms state it without the error of their reference. Empty if
   // not determined.
   std::optional<Matrix6d> covariance;
+  std::string weakest_direction;       // of the covariance, in words (WeakestDirection)
   double rotation_sigma = -1.0;        // radians; -1 if there is no covariance
   double direction_sigma = -1.0;       // radians
   double relative_scale_sigma = -1.0;  // of |t|, a fraction; infinite if not determined

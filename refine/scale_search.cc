@@ -4,7 +4,6 @@
 #include <limits>
 #include <vector>
 
-#include "rigel/refine/epipolar_residuals.h"
 #include "rigel/refine/sign_and_scale.h"
 #include "rigel/refine/small_engine.h"
 #include "rigel/refine/uncertainty.h"
@@ -41,8 +40,7 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
   if (!(norm > 0) || !(length > 0)) return false;
   const Eigen::Vector3d direction = pose->t / norm;
   const GroupedMatches subset(matches.rig(), EvenSubset(matches.matches(), kSubset));
-  const EpipolarResiduals residuals(subset, ResidualKind::kSampson);
-  SmallEngine engine(residuals);
+  SmallEngine engine(subset);
   std::vector<double> errors;
   std::vector<char> mask(subset.size(), 1);
   const std::vector<char> all = mask;

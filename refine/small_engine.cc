@@ -2,115 +2,177 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
-#include <ceres/tiny_solver.h>
+#include <Eigen/Cholesky>
 
-#include "rigel/refine/motion_parameterization.h"
+#include "rigel/refine/sampson_kernel.h"
 
 namespace rigel {
 namespace {
 
-// rho(s), so that r sqrt(rho(r^2)) / |r| is the folded residual.
-double LossValue(LossKind kind, double scale, double s) {
-  const double scale2 = scale * scale;
-  switch (kind) {
-    case LossKind::kNone:
-      return s;
-    case LossKind::kHuber:
-      return s <= scale2 ? s : 2.0 * scale * std::sqrt(s) - scale2;
-    case LossKind::kCauchy:
-      return scale2 * std::log1p(s / scale2);
-    case LossKind::kTukey: {
-      const double u = std::max(0.0, 1.0 - s / scale2);
-      return scale2 / 3.0 * (1.0 - u * u * u);
-    }
-    case LossKind::kTruncated:
-      return std::min(s, scale2);
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+
+// Cost, gradient and curvature at one point, and how to get them.
+class NormalEquations {
+ public:
+  NormalEquations(const SmallEngineOptions& options, const GroupedMatches& matches,
+                  const MotionParameterization& parameterization,
+                  const std::vector<double>& weights, const PriorResiduals& prior,
+                  double prior_unit, std::vector<GroupLinearization>* groups)
+      : matches_(matches),
+        parameterization_(parameterization),
+        weights_(weights),
+        prior_(prior),
+        prior_unit_(prior_unit),
+        groups_(groups) {
+    kernel_.loss = options.loss;
+    kernel_.loss_scale = options.loss_scale;
+    kernel_.curvature = Curvature::kNewton;
   }
-  return s;
+
+  void Evaluate(const Vector& parameters) {
+    const int n = static_cast<int>(parameters.size());
+    Pose pose;
+    MotionBasis basis;
+    parameterization_.Evaluate(parameters.data(), &pose, &basis);
+    LinearizeGroups(matches_, ResidualKind::kSampson, pose, &basis, groups_);
+    cost = 0.0;
+    gradient.setZero(n);
+    curvature.setZero(n, n);
+    for (size_t g = 0; g < groups_->size(); ++g) {
+      const MatchGroup& group = matches_.groups()[g];
+      const GroupLinearization& linear = (*groups_)[g];
+      const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = linear.F;
+      SampsonSums sums;
+      SumSampson(kernel_, matches_.Pixels(group), weights_.data() + group.begin, F.data(),
+                 linear.rounding2, true, &sums);
+      cost += sums.cost;
+      Eigen::Matrix<double, 9, Eigen::Dynamic, Eigen::ColMajor, 9, 6> D(9, n);
+      for (int m = 0; m < n; ++m) {
+        Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(D.col(m).data()) = linear.dF[m];
+      }
+      const Eigen::Map<const Eigen::Matrix<double, 9, 9>> H(sums.H);
+      const Eigen::Matrix<double, 9, Eigen::Dynamic, Eigen::ColMajor, 9, 6> HD = H.lazyProduct(D);
+      gradient.noalias() +=
+          D.transpose().lazyProduct(Eigen::Map<const Eigen::Matrix<double, 9, 1>>(sums.g));
+      curvature.noalias() += D.transpose().lazyProduct(HD);
+    }
+    if (prior_.size() == 0) return;
+    PriorResiduals::Residuals r;
+    PriorResiduals::Jacobian by_motion;
+    prior_.Evaluate(pose, &r, &by_motion);
+    const PriorResiduals::Jacobian J = prior_unit_ * by_motion.lazyProduct(basis);
+    r *= prior_unit_;
+    cost += 0.5 * r.squaredNorm();
+    gradient.noalias() += J.transpose().lazyProduct(r);
+    curvature.noalias() += J.transpose().lazyProduct(J);
+  }
+
+  bool AllFinite() const {
+    return std::isfinite(cost) && gradient.allFinite() && curvature.allFinite();
+  }
+
+  double cost = 0.0;
+  Vector gradient;
+  Square curvature;
+
+ private:
+  const GroupedMatches& matches_;
+  const MotionParameterization& parameterization_;
+  const std::vector<double>& weights_;
+  const PriorResiduals& prior_;
+  double prior_unit_;
+  SampsonKernelOptions kernel_;
+  std::vector<GroupLinearization>* groups_;
+};
+
+// Damping by the diagonal of the scaled curvature; radians and metres are unlike.
+Vector DampedStep(const NormalEquations& at, double mu) {
+  constexpr double kMinDiagonal = 1e-6;
+  const Vector scale = (1.0 + at.curvature.diagonal().array().sqrt()).inverse();
+  Square scaled = scale.asDiagonal() * at.curvature * scale.asDiagonal();
+  scaled.diagonal() += mu * scaled.diagonal().cwiseMax(kMinDiagonal);
+  const Vector b = -(scale.array() * at.gradient.array());
+  return scale.array() * scaled.llt().solve(b).array();
 }
 
 }  // namespace
 
-class SmallEngine::Impl {
- public:
-  // What ceres::TinySolver asks of a function.
-  using Scalar = double;
-  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 6 };
-
-  explicit Impl(const EpipolarResiduals& residuals) : residuals_(residuals) {}
-
-  int NumResiduals() const { return residuals_.size(); }
-
-  bool operator()(const double* parameters, double* r, double* jacobian) const {
-    Pose pose;
-    parameterization_.Evaluate(parameters, &pose, jacobian != nullptr ? &basis_ : nullptr);
-    residuals_.Linearize(pose, jacobian != nullptr ? &basis_ : nullptr, &groups_);
-    const int n = residuals_.size();
-    for (int k = 0; k < n; ++k) {
-      double* row = jacobian != nullptr ? jacobian + k : nullptr;
-      if (!(*mask_)[k]) {
-        r[k] = 0.0;
-        for (int m = 0; m < 6 && row != nullptr; ++m) row[m * n] = 0.0;
-        continue;
+SmallEngineSummary SmallEngine::Solve(const SmallEngineOptions& options,
+                                      const MotionParameterization& parameterization,
+                                      const std::vector<double>& weights,
+                                      const PriorResiduals& prior, double prior_unit,
+                                      double* parameters) {
+  constexpr double kInitialDamping = 1e-4;
+  constexpr double kMaxDamping = 1e16;
+  constexpr double kMinStep = 1e-14;  // radians and metres
+  SmallEngineSummary summary;
+  num_iterations_ = 0;
+  const int n = parameterization.size();
+  Eigen::Map<Vector> best(parameters, n);
+  NormalEquations at(options, matches_, parameterization, weights, prior, prior_unit, &groups_);
+  NormalEquations next = at;
+  at.Evaluate(best);
+  if (!at.AllFinite()) return summary;
+  summary.usable = true;
+  summary.initial_cost = at.cost;
+  double mu = kInitialDamping;
+  double growth = 2.0;
+  while (summary.num_iterations < options.max_num_iterations) {
+    ++summary.num_iterations;
+    const Vector step = DampedStep(at, mu);
+    const double predicted =
+        -step.dot(at.gradient) - 0.5 * step.dot(at.curvature.lazyProduct(step));
+    if (step.allFinite() && (predicted <= options.tolerance * at.cost || step.norm() < kMinStep)) {
+      summary.converged = true;
+      if (predicted > 0) {
+        best += step;
+        at.cost -= predicted;
       }
-      const double value = residuals_.Evaluate(groups_, k, 6, row, n);
-      const double s = value * value;
-      const double rho = LossValue(options_.loss, options_.loss_scale, s);
-      const double fold = s > 0 ? std::sqrt(rho / s) : 1.0;
-      r[k] = fold * value;
-      if (row == nullptr) continue;
-      // d(r sqrt(rho / s)) / dr = rho' / fold.
-      const double slope =
-          fold > 0 ? LossWeight(options_.loss, options_.loss_scale, value) / fold : 0.0;
-      for (int m = 0; m < 6; ++m) row[m * n] *= slope;
+      break;
     }
-    return true;
+    const Vector candidate = best + step;
+    if (candidate.allFinite()) next.Evaluate(candidate);
+    if (candidate.allFinite() && next.AllFinite() && next.cost < at.cost) {
+      const double quality = (at.cost - next.cost) / predicted;
+      const double shrink = 2.0 * quality - 1.0;
+      mu *= std::max(1.0 / 3.0, 1.0 - shrink * shrink * shrink);
+      growth = 2.0;
+      best = candidate;
+      std::swap(at.cost, next.cost);
+      std::swap(at.gradient, next.gradient);
+      std::swap(at.curvature, next.curvature);
+    } else {
+      mu *= growth;
+      growth *= 2.0;
+      // Nothing below rounding can be gained.
+      if (mu > kMaxDamping) break;
+    }
   }
-
-  bool Minimize(const SmallEngineOptions& options, const std::vector<char>& mask, Pose* pose) {
-    options_ = options;
-    mask_ = &mask;
-    const auto form =
-        options.inverse_scale ? TranslationForm::kInverseScale : TranslationForm::kFree;
-    if (!parameterization_.Set(RotationForm::kFree, form, *pose, Alignment(), RayPair())) {
-      return false;
-    }
-    Eigen::Matrix<double, 6, 1> parameters = Eigen::Matrix<double, 6, 1>::Zero();
-    solver_.options.max_num_iterations = options.max_num_iterations;
-    solver_.Solve(*this, &parameters);
-    if (!(solver_.summary.final_cost < solver_.summary.initial_cost) || !parameters.allFinite()) {
-      return false;
-    }
-    Pose result;
-    parameterization_.Evaluate(parameters.data(), &result, nullptr);
-    if (!result.AllFinite()) return false;
-    *pose = result;
-    return true;
-  }
-
-  int num_iterations() const { return solver_.summary.iterations; }
-
- private:
-  const EpipolarResiduals& residuals_;
-  SmallEngineOptions options_;
-  const std::vector<char>* mask_ = nullptr;
-  MotionParameterization parameterization_;
-  mutable MotionBasis basis_;
-  mutable std::vector<GroupLinearization> groups_;
-  ceres::TinySolver<Impl> solver_;
-};
-
-SmallEngine::SmallEngine(const EpipolarResiduals& residuals)
-    : impl_(std::make_unique<Impl>(residuals)) {}
-SmallEngine::~SmallEngine() = default;
+  summary.final_cost = at.cost;
+  num_iterations_ = summary.num_iterations;
+  return summary;
+}
 
 bool SmallEngine::Minimize(const SmallEngineOptions& options, const std::vector<char>& mask,
                            Pose* pose) {
-  return impl_->Minimize(options, mask, pose);
+  num_iterations_ = 0;
+  MotionParameterization parameterization;
+  const auto form = options.inverse_scale ? TranslationForm::kInverseScale : TranslationForm::kFree;
+  if (!parameterization.Set(RotationForm::kFree, form, *pose, Alignment(), RayPair())) {
+    return false;
+  }
+  weights_.assign(mask.begin(), mask.end());
+  double parameters[6] = {0, 0, 0, 0, 0, 0};
+  const SmallEngineSummary summary =
+      Solve(options, parameterization, weights_, PriorResiduals(), 1.0, parameters);
+  if (!summary.usable || !(summary.final_cost < summary.initial_cost)) return false;
+  Pose result;
+  parameterization.Evaluate(parameters, &result, nullptr);
+  if (!result.AllFinite()) return false;
+  *pose = result;
+  return true;
 }
-
-int SmallEngine::num_iterations() const { return impl_->num_iterations(); }
 
 }  // namespace rigel

@@ -2,28 +2,52 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "rigel/core/angles.h"
 #include "rigel/refine/epipolar_residuals.h"
+#include "rigel/refine/sampson_kernel.h"
 
 namespace rigel {
 
-Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<char>& mask,
-                            const Pose& pose) {
-  const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
+namespace {
+
+// J'J of the Sampson residuals of one camera pair, each times its weight.
+Matrix6d GroupInformation(const GroupedMatches& matches, const MatchGroup& group,
+                          const GroupLinearization& linear, const double* weights) {
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = linear.F;
+  SampsonSums sums;
+  SumSampson(SampsonKernelOptions(), matches.Pixels(group), weights, F.data(), linear.rounding2,
+             true, &sums);
+  Eigen::Matrix<double, 9, 6> D;
+  for (int m = 0; m < 6; ++m) {
+    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(D.col(m).data()) = linear.dF[m];
+  }
+  return D.transpose() * Eigen::Map<const Eigen::Matrix<double, 9, 9>>(sums.H) * D;
+}
+
+std::vector<GroupLinearization> LinearizeFully(const GroupedMatches& matches, const Pose& pose) {
   const MotionBasis basis = FullBasis(pose, true);
   std::vector<GroupLinearization> groups;
-  residuals.Linearize(pose, &basis, &groups);
+  LinearizeGroups(matches, ResidualKind::kSampson, pose, &basis, &groups);
+  return groups;
+}
+
+}  // namespace
+
+Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<char>& mask,
+                            const Pose& pose) {
+  const std::vector<GroupLinearization> linear = LinearizeFully(matches, pose);
+  const std::vector<double> weights(mask.begin(), mask.end());
   Matrix6d information = Matrix6d::Zero();
-  Eigen::Matrix<double, 6, 1> j;
-  for (int k = 0; k < residuals.size(); ++k) {
-    if (!mask[k]) continue;
-    residuals.Evaluate(groups, k, 6, j.data());
-    information.noalias() += j * j.transpose();
+  for (size_t g = 0; g < linear.size(); ++g) {
+    const MatchGroup& group = matches.groups()[g];
+    information += GroupInformation(matches, group, linear[g], weights.data() + group.begin);
   }
   return information;
 }
@@ -32,17 +56,10 @@ void EpipoleWeights(const GroupedMatches& matches, const Pose& pose, double nois
                     std::vector<double>* weights) {
   weights->resize(matches.size());
   for (const MatchGroup& group : matches.groups()) {
-    const Eigen::Matrix3d F = matches.Fundamental(group, pose);
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = matches.Fundamental(group, pose);
     const double floor2 = kEpipoleSigmas * kEpipoleSigmas * noise_px * noise_px *
                           F.topLeftCorner<2, 2>().squaredNorm();
-    const PixelArrays pixels = matches.Pixels(group);
-    for (int i = 0; i < group.size; ++i) {
-      const Eigen::Vector3d p1(pixels.x1[i], pixels.y1[i], 1.0);
-      const Eigen::Vector3d p2(pixels.x2[i], pixels.y2[i], 1.0);
-      const double gradient2 =
-          (F * p1).head<2>().squaredNorm() + (F.transpose() * p2).head<2>().squaredNorm();
-      (*weights)[group.begin + i] = gradient2 > 0 ? gradient2 / (gradient2 + floor2) : 0.0;
-    }
+    GradientWeights(matches.Pixels(group), F.data(), floor2, weights->data() + group.begin);
   }
 }
 
@@ -74,26 +91,19 @@ Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<ch
   constexpr double kSigmas = 5.0;
   constexpr double kParallaxNoise = 6.0;  // sigma
   const double variance = noise_px * noise_px;
-  const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
   const MotionBasis basis = FullBasis(pose, true);
   std::vector<double> weights;
   EpipoleWeights(matches, pose, noise_px, &weights);
-  std::vector<GroupLinearization> linear;
-  residuals.Linearize(pose, &basis, &linear);
-  std::vector<Matrix6d> information(matches.groups().size(), Matrix6d::Zero());
+  for (size_t k = 0; k < weights.size(); ++k) weights[k] = mask[k] ? weights[k] : 0.0;
+  const std::vector<GroupLinearization> linear = LinearizeFully(matches, pose);
+  std::vector<Matrix6d> information(matches.groups().size());
   std::vector<double> baseline;
   Matrix6d sum = Matrix6d::Zero();
   double longest = 0.0;
   for (size_t g = 0; g < matches.groups().size(); ++g) {
     const MatchGroup& group = matches.groups()[g];
-    Eigen::Matrix<double, 6, 1> j;
-    for (int k = group.begin; k < group.begin + group.size; ++k) {
-      if (!mask[k]) continue;
-      residuals.Evaluate(linear, k, 6, j.data());
-      j *= weights[k];
-      information[g].noalias() += j * j.transpose();
-    }
-    information[g] /= variance;
+    information[g] =
+        GroupInformation(matches, group, linear[g], weights.data() + group.begin) / variance;
     sum += information[g];
     const RigCamera& c1 = matches.rig().cameras[group.camera1];
     const RigCamera& c2 = matches.rig().cameras[group.camera2];
@@ -126,7 +136,9 @@ bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis,
   const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
   const Square scaled = scale.asDiagonal() * reduced * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Square> eigen(scaled);
-  if (!(eigen.eigenvalues()(0) > 1e-14)) return false;
+  // What rounding in pixels of some hundred makes of zero stays below this.
+  constexpr double kMinEigenvalue = 1e-11;
+  if (!(eigen.eigenvalues()(0) > kMinEigenvalue)) return false;
   const Square inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
                          eigen.eigenvectors().transpose();
   const Square unscaled = scale.asDiagonal() * inverse * scale.asDiagonal();
@@ -192,6 +204,38 @@ double DirectionSigma(const Matrix6d& covariance, const Eigen::Vector3d& t) {
   if (!(norm > 0)) return std::numeric_limits<double>::infinity();
   const Eigen::Matrix<double, 3, 2> across = TangentBasis(t / norm);
   return std::sqrt((across.transpose() * covariance.block<3, 3>(3, 3) * across).trace()) / norm;
+}
+
+std::string WeakestDirection(const Matrix6d& covariance, const Eigen::Vector3d& t) {
+  const double norm = t.norm();
+  if (!(norm > 0) || !covariance.allFinite()) return "";
+  Eigen::Matrix<double, 6, 1> unit;
+  unit << 1, 1, 1, norm, norm, norm;
+  const Matrix6d relative = unit.cwiseInverse().asDiagonal() * covariance *
+                            unit.cwiseInverse().asDiagonal().toDenseMatrix();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(relative);
+  Eigen::Matrix<double, 6, 1> weakest =
+      unit.cwiseProduct(eigen.eigenvectors().col(5)) * std::sqrt(eigen.eigenvalues()(5));
+  // Either sign is as good: the larger part of t points forward of its own axis.
+  int largest = 3;
+  for (int k = 4; k < 6; ++k) {
+    if (std::abs(weakest(k)) > std::abs(weakest(largest))) largest = k;
+  }
+  if (weakest(largest) < 0) weakest = -weakest;
+  const Eigen::Vector3d turn = weakest.head<3>();
+  const Eigen::Vector3d shift = weakest.tail<3>();
+  const auto axis = [](const Eigen::Vector3d& v) {
+    const Eigen::Vector3d u = v.norm() > 0 ? Eigen::Vector3d(v.normalized()) : v;
+    char text[64];
+    // No "-0.0".
+    std::snprintf(text, sizeof(text), "(%.1f, %.1f, %.1f)", std::round(10 * u.x()) / 10 + 0.0,
+                  std::round(10 * u.y()) / 10 + 0.0, std::round(10 * u.z()) / 10 + 0.0);
+    return std::string(text);
+  };
+  char text[192];
+  std::snprintf(text, sizeof(text), "turn by %.3g deg about %s with t by %.3g m along %s",
+                RadToDeg(turn.norm()), axis(turn).c_str(), shift.norm(), axis(shift).c_str());
+  return text;
 }
 
 double ParallaxPercentilePx(const GroupedMatches& matches, const std::vector<char>& mask,

@@ -76,6 +76,11 @@ double RelativeScaleSigma(const Matrix6d& information, const Pose& pose);
 double RotationSigma(const Matrix6d& covariance);
 double DirectionSigma(const Matrix6d& covariance, const Eigen::Vector3d& t);
 
+// The motion that the matches determine worst, in words, by one standard deviation: "turn by 0.012
+// deg about (0.1, 1.0, 0.0) with t by 0.0210 m along (1.0, 0.0, 0.1)". Rotation and t over |t|
+// count alike. Axes are those of the body frame at time 2. Empty at t = 0.
+std::string WeakestDirection(const Matrix6d& covariance, const Eigen::Vector3d& t);
+
 // What 80 percent of the intra-camera matches of the mask stay below: the angle in pixels by which
 // a match moves besides the rotation, times the share |t| / (|t| + |R s - s|) of it that the body's
 // translation can have made and not the camera's arm. Infinity if there are none.

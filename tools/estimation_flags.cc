@@ -107,6 +107,18 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
   if (!ParseLoss(FLAGS_loss, &estimate.refine.loss)) {
     return wrong("loss", FLAGS_loss, "none, huber, cauchy, tukey or truncated");
   }
+  if (!estimate.refine_motion &&
+      (FLAGS_fix_translation_norm || FLAGS_use_prior_in_refine || FLAGS_estimate_noise)) {
+    *error =
+        "--fix_translation_norm, --use_prior_in_refine and --estimate_noise are of the refinement, "
+        "which --refine=none leaves out";
+    return false;
+  }
+  if (estimate.refine_motion && estimate.refine.form == RefineForm::kBundle &&
+      estimate.refine.residual != ResidualKind::kSampson) {
+    *error = "--residual=" + FLAGS_residual + ": --refine=bundle has reprojection errors";
+    return false;
+  }
   estimate.refine.use_prior = FLAGS_use_prior_in_refine;
   estimate.refine.scale = FLAGS_fix_translation_norm ? ScaleMode::kFixed : ScaleMode::kAuto;
   options->prior.true_distance = FLAGS_fix_translation_norm;

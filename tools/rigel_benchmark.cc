@@ -68,6 +68,9 @@ int Run() {
     return UsageError("--num_cameras: expected 1 to 4");
   if (FLAGS_trials < 1) return UsageError("--trials: expected at least 1");
   if (!std::isfinite(FLAGS_rotation_deg)) return UsageError("--rotation_deg: expected a number");
+  if (FLAGS_refine && !FLAGS_solvers.empty()) {
+    return UsageError("--solvers: --refine times no solver");
+  }
   if (FLAGS_refine) return RunRefinement();
   std::vector<const SolverInfo*> solvers;
   const std::vector<std::string> names = SplitCommas(FLAGS_solvers);

@@ -94,9 +94,8 @@ BENCHMARK(BM_SampsonJacobian);
 void BM_SmallEngine(benchmark::State& state) {
   const FramePair pair = ScenePair(600, 0.5, 0.5, MotionPattern::kRandom);
   const GroupedMatches matches(pair.rig, pair.matches);
-  const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
   const std::vector<char> mask(600, 1);
-  SmallEngine engine(residuals);
+  SmallEngine engine(matches);
   for (auto _ : state) {
     Pose pose = *pair.truth;
     pose.R = ExpSO3({0.01, -0.01, 0.01}) * pose.R;

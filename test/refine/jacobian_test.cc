@@ -170,6 +170,10 @@ class ChartTwin {
           d2 += x[1];
         } else if (form_.translation == TranslationForm::kDepth) {
           d2 += x[0];
+        } else if (form_.translation == TranslationForm::kDepthsOnSphere) {
+          // Along the level line of |t|.
+          d1 += x[0] * T(across_.y());
+          d2 -= x[0] * T(across_.x());
         } else if (form_.translation == TranslationForm::kPlanarDepths) {
           d1 += x[0] * T(along_line_.x());
           d2 += x[0] * T(along_line_.y());
@@ -179,6 +183,15 @@ class ChartTwin {
         const Vector3<T> X1 = ray1.s.cast<T>() + ray1.x.cast<T>() * d1;
         const Vector3<T> X2 = ray2.s.cast<T>() + ray2.x.cast<T>() * d2;
         motion.t = X2 - motion.R * X1;
+        if (form_.translation == TranslationForm::kDepthsOnSphere ||
+            form_.translation == TranslationForm::kPlanarDepthsOnSphere) {
+          // |t + q v| = |t0|.
+          const Vector3<T> v =
+              ray2.x.cast<T>() * T(across_.y()) - motion.R * (ray1.x.cast<T>() * T(across_.x()));
+          const T b = motion.t.dot(v);
+          const T c = motion.t.squaredNorm() - T(t0_.squaredNorm());
+          motion.t += v * ((sqrt(b * b - v.squaredNorm() * c) - b) / v.squaredNorm());
+        }
       }
     }
     return motion;
@@ -196,8 +209,16 @@ class ChartTwin {
     Eigen::Matrix<double, 3, 2> A;
     A << R0_ * ray1.x, -ray2.x;
     distance_ = A.colPivHouseholderQr().solve(ray2.s - R0_ * ray1.s - t0_);
+    Eigen::Matrix<double, 3, 2> by_depth;
+    by_depth << -(R0_ * ray1.x), ray2.x;
+    const auto gradient = [&]() -> Eigen::Vector2d {
+      const Eigen::Vector3d t = ray2.s - R0_ * ray1.s + by_depth * distance_;
+      return by_depth.transpose() * t;
+    };
     if (form_.translation != TranslationForm::kPlanarDepths &&
-        form_.translation != TranslationForm::kPlanarDepth) {
+        form_.translation != TranslationForm::kPlanarDepth &&
+        form_.translation != TranslationForm::kPlanarDepthsOnSphere) {
+      across_ = gradient().normalized();
       return;
     }
     // The heights of the point over the plane at the two times are the same.
@@ -206,6 +227,7 @@ class ChartTwin {
                               start_.n1.dot(ray1.s + distance_.x() * ray1.x);
     distance_ -= line * difference / line.squaredNorm();
     along_line_ = Eigen::Vector2d(line.y(), -line.x()).normalized();
+    across_ = gradient().dot(along_line_) < 0 ? -along_line_ : along_line_;
   }
 
   Form form_;
@@ -215,6 +237,7 @@ class ChartTwin {
   Eigen::Matrix<double, 3, 2> tangent_ = Eigen::Matrix<double, 3, 2>::Zero();
   Eigen::Vector2d distance_ = Eigen::Vector2d::Zero();  // from the cameras
   Eigen::Vector2d along_line_ = Eigen::Vector2d::Zero();
+  Eigen::Vector2d across_ = Eigen::Vector2d::Zero();
 };
 
 // epipolar_residuals.h.
@@ -460,8 +483,36 @@ Motion<Jet> PerturbedJets(const Pose& pose) {
 }
 
 // Pose and basis of the chart itself, each column relative to itself.
-TEST(Jacobian, ChartMatchesAutomaticDifferentiation) {
+void CompareChart(const MotionParameterization& chart, const Form& form, const Start& start,
+                  const Parameters& x, int number, Worst* values, Worst* derivatives) {
   using Jet = ceres::Jet<double, 6>;
+  Pose pose;
+  MotionBasis basis;
+  chart.Evaluate(x.data(), &pose, &basis);
+  const Motion<Jet> twin = ChartTwin(form, start)(ToJets<Jet>(x, form.size).data());
+  Pose expected;
+  for (int r = 0; r < 3; ++r) {
+    expected.t(r) = twin.t(r).a;
+    for (int c = 0; c < 3; ++c) expected.R(r, c) = twin.R(r, c).a;
+  }
+  values->Add((pose.R - expected.R).norm() + RelativeError(pose.t, expected.t),
+              [&] { return At(form, number); });
+  for (int k = 0; k < form.size; ++k) {
+    Eigen::Matrix3d dR;
+    Vector6d column;
+    for (int r = 0; r < 3; ++r) {
+      column(3 + r) = twin.t(r).v(k);
+      for (int c = 0; c < 3; ++c) dR(r, c) = twin.R(r, c).v(k);
+    }
+    const Eigen::Matrix3d W = dR * expected.R.transpose();
+    column.head<3>() << W(2, 1) - W(1, 2), W(0, 2) - W(2, 0), W(1, 0) - W(0, 1);
+    column.head<3>() *= 0.5;
+    derivatives->Add(RelativeError(basis.col(k), column),
+                     [&] { return At(form, number) + ", column " + std::to_string(k); });
+  }
+}
+
+TEST(Jacobian, ChartMatchesAutomaticDifferentiation) {
   Worst values, derivatives;
   int columns = 0;
   for (int i = 0; i < kPoints; ++i) {
@@ -473,34 +524,56 @@ TEST(Jacobian, ChartMatchesAutomaticDifferentiation) {
                             p.start.reference));
       ASSERT_EQ(chart.size(), form.size) << form.name;
       const Parameters x = RandomParameters(form, i, true, &random);
-      Pose pose;
-      MotionBasis basis;
-      chart.Evaluate(x.data(), &pose, &basis);
-      const Motion<Jet> twin = ChartTwin(form, p.start)(ToJets<Jet>(x, form.size).data());
-      Pose expected;
-      for (int r = 0; r < 3; ++r) {
-        expected.t(r) = twin.t(r).a;
-        for (int c = 0; c < 3; ++c) expected.R(r, c) = twin.R(r, c).a;
-      }
-      values.Add((pose.R - expected.R).norm() + RelativeError(pose.t, expected.t),
-                 [&] { return At(form, i); });
-      for (int k = 0; k < form.size; ++k) {
-        Eigen::Matrix3d dR;
-        Vector6d column;
-        for (int r = 0; r < 3; ++r) {
-          column(3 + r) = twin.t(r).v(k);
-          for (int c = 0; c < 3; ++c) dR(r, c) = twin.R(r, c).v(k);
-        }
-        const Eigen::Matrix3d W = dR * expected.R.transpose();
-        column.head<3>() << W(2, 1) - W(1, 2), W(0, 2) - W(2, 0), W(1, 0) - W(0, 1);
-        column.head<3>() *= 0.5;
-        derivatives.Add(RelativeError(basis.col(k), column),
-                        [&] { return At(form, i) + ", column " + std::to_string(k); });
-        ++columns;
-      }
+      CompareChart(chart, form, p.start, x, i, &values, &derivatives);
+      columns += form.size;
     }
   }
   values.Expect("values", kTolerance, kPoints * 18);
+  derivatives.Expect("derivatives", kTolerance, columns);
+}
+
+// Where |t| is held there are depths near a start of the form only: its rotation is of any size,
+// the way from it is short.
+TEST(Jacobian, DepthsOnTheSphereMatchAutomaticDifferentiation) {
+  constexpr Form kOnSphere[] = {
+      {RotationForm::kFree, TranslationForm::kDepthsOnSphere, "free, depths on the sphere", 4},
+      {RotationForm::kAngle, TranslationForm::kDepthsOnSphere, "angle, depths on the sphere", 2},
+      {RotationForm::kFree, TranslationForm::kPlanarDepthsOnSphere, "free, planar", 3},
+      {RotationForm::kAngle, TranslationForm::kPlanarDepthsOnSphere, "angle, planar", 1}};
+  Worst values, derivatives;
+  int columns = 0, compared = 0;
+  for (int i = 0; i < kPoints; ++i) {
+    const Point p = MakePoint(i);
+    Random random = Random::Stream(142, i);
+    for (const Form& form : kOnSphere) {
+      // A start of the form: the reference and, where it is exact, the prior hold.
+      const bool planar = form.translation == TranslationForm::kPlanarDepthsOnSphere;
+      const auto free_form = planar ? TranslationForm::kPlanarDepths : TranslationForm::kDepths;
+      const Parameters zero{};
+      Start start = p.start;
+      MotionParameterization chart;
+      ASSERT_TRUE(
+          chart.Set(form.rotation, free_form, start.pose, start.alignment, start.reference));
+      chart.Evaluate(zero.data(), &start.pose, nullptr);
+      const bool set =
+          chart.Set(form.rotation, form.translation, start.pose, start.alignment, start.reference);
+      if (!set) continue;
+      ASSERT_EQ(chart.size(), form.size) << form.name;
+      Parameters x{};
+      for (int k = 0; k < form.size; ++k) {
+        x[k] = std::pow(10.0, random.Uniform(-9.0, -2.5)) * (k % 2 == 0 ? 1.0 : -1.0);
+      }
+      Pose at;
+      chart.Evaluate(x.data(), &at, nullptr);
+      const double length = start.pose.t.norm();
+      if (std::abs(at.t.norm() - length) > 1e-9 * length) continue;
+      CompareChart(chart, form, start, x, i, &values, &derivatives);
+      columns += form.size;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, kPoints * 4 * 9 / 10);
+  values.Expect("values", kTolerance, compared);
   derivatives.Expect("derivatives", kTolerance, columns);
 }
 

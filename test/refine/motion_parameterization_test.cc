@@ -138,6 +138,9 @@ TEST(MotionParameterization, ProjectsAStartThatIsNotOfItsForm) {
             EXPECT_NEAR((at.t - start.t).dot(p.reference.ray2.x), 0.0, 1e-9);
             EXPECT_NEAR(GecTripleProduct(at, p.reference), 0.0, 1e-10);
             break;
+          case TranslationForm::kDepthsOnSphere:
+          case TranslationForm::kPlanarDepthsOnSphere:
+            break;  // DepthsOnTheSphereHoldTheLengthOfT
           case TranslationForm::kPlanarDepths:
           case TranslationForm::kPlanarDepth:
             EXPECT_NEAR(GecTripleProduct(at, p.reference), 0.0, 1e-10);
@@ -231,6 +234,28 @@ TEST(MotionParameterization, DepthKeepsTheFirstDepthOfTheReference) {
   const Pose start = At(chart, {0, 0, 0, 0});
   const Pose moved = At(chart, {0, 0, 0, 2.5});
   EXPECT_LT((moved.t - start.t - 2.5 * p.reference.ray2.x).norm(), 1e-12);
+}
+
+TEST(MotionParameterization, DepthsOnTheSphereHoldTheLengthOfT) {
+  int count = 0, held = 0;
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    const Problem p = MakeProblem(seed);
+    Pose start = p.pose;
+    start.t *= 1.01;  // not of the reference
+    for (const TranslationForm form :
+         {TranslationForm::kDepthsOnSphere, TranslationForm::kPlanarDepthsOnSphere}) {
+      MotionParameterization chart;
+      ASSERT_TRUE(chart.Set(RotationForm::kFree, form, start, p.alignment, p.reference));
+      for (const double turn : {-0.003, 0.0, 0.003}) {
+        const Pose pose = At(chart, {turn, 0.5 * turn, -turn, 2.0 * turn});
+        // There may be no such depths: then |t| is the nearest.
+        ++count;
+        held += std::abs(pose.t.norm() - start.t.norm()) < 1e-9 * start.t.norm();
+        EXPECT_NEAR(GecTripleProduct(pose, p.reference), 0.0, 1e-10 * (1 + pose.t.norm()));
+      }
+    }
+  }
+  EXPECT_GE(held, 0.97 * count);
 }
 
 TEST(MotionParameterization, InverseScaleStaysWithinItsBoundsAndNeverChangesTheSign) {

@@ -534,22 +534,74 @@ TEST(Refine, TheDepthFormsChooseTheirReferenceAnew) {
 }
 
 TEST(Refine, FixedScaleKeepsTheLengthOfT) {
-  for (const double inter_share : {0.0, 0.5}) {
-    SceneOptions scene;
-    scene.inter_share = inter_share;
-    const FramePair pair = ScenePair(scene, 4);
-    Random random(4);
-    Pose pose = StartNear(*pair.truth, 0.05, 0.02, &random);
-    const double length = pose.t.norm();
-    RefineOptions options;
-    options.scale = ScaleMode::kFixed;
-    options.threshold_px = 3.0;
-    const RefineSummary summary = RefinePair(options, pair, &pose);
-    ASSERT_TRUE(summary.IsSolutionUsable());
-    EXPECT_NEAR(pose.t.norm(), length, 1e-12);
-    ASSERT_TRUE(summary.covariance.has_value());
-    EXPECT_LT((summary.covariance->block<3, 3>(3, 3) * pose.t).norm(), 1e-10);
+  for (const RefineForm form : kForms) {
+    for (const double inter_share : {0.0, 0.5}) {
+      SCOPED_TRACE(RefineFormName(form));
+      SceneOptions scene;
+      scene.inter_share = inter_share;
+      const FramePair pair = ScenePair(scene, 4);
+      Random random(4);
+      Pose pose = StartNear(*pair.truth, 0.05, 0.02, &random);
+      const double length = pose.t.norm();
+      RefineOptions options;
+      options.form = form;
+      options.prior_kind = PriorKind::kAxis;
+      options.scale = ScaleMode::kFixed;
+      options.threshold_px = 3.0;
+      const RefineSummary summary = RefinePair(options, pair, &pose);
+      ASSERT_TRUE(summary.IsSolutionUsable()) << summary.message;
+      EXPECT_NEAR(pose.t.norm(), length, 1e-9);
+      ASSERT_TRUE(summary.covariance.has_value());
+      EXPECT_LT((summary.covariance->block<3, 3>(3, 3) * pose.t).norm(), 1e-10);
+    }
   }
+}
+
+// The small engine and a ceres::Problem, with everything that a fit can have.
+TEST(Refine, BothEnginesEndInOnePlace) {
+  double farthest = 0.0;
+  for (const RefineForm form : kForms) {
+    for (const LossKind loss :
+         {LossKind::kNone, LossKind::kHuber, LossKind::kCauchy, LossKind::kTukey}) {
+      for (const bool use_prior : {false, true}) {
+        for (int index = 0; index < 8; ++index) {
+          SCOPED_TRACE(std::string(RefineFormName(form)) + ", " + LossName(loss) +
+                       (use_prior ? ", prior, pair " : ", pair ") + std::to_string(index));
+          SceneOptions scene;
+          scene.inter_share = 0.25 * (index % 3);
+          FramePair pair = ScenePair(scene, index);
+          pair.prior.axis_sigma = 1e-3;
+          pair.prior.gravity_sigma = 1e-3;
+          Random random = Random::Stream(21, index);
+          const Pose start = StartNear(*pair.truth, 0.05, 0.02, &random);
+          RefineOptions options;
+          options.form = form;
+          options.loss = loss;
+          options.use_prior = use_prior;
+          options.prior_kind = index % 2 == 0 ? PriorKind::kAxis : PriorKind::kVertical;
+          options.noise_px = scene.noise_px;
+          options.scale = scene.inter_share > 0 ? ScaleMode::kFree : ScaleMode::kFixed;
+          options.max_num_iterations = 500;
+          options.max_rounds = 1;  // the same reference and selection
+          options.threshold_px = 3.0;
+          Pose small = start, by_ceres = start;
+          const RefineSummary a = RefinePair(options, pair, &small);
+          options.engine = RefineEngine::kCeres;
+          const RefineSummary b = RefinePair(options, pair, &by_ceres);
+          ASSERT_TRUE(a.IsSolutionUsable() && b.IsSolutionUsable());
+          EXPECT_NEAR(a.final_cost, b.final_cost, 1e-6 * b.final_cost);
+          ASSERT_TRUE(b.covariance.has_value());
+          // The covariance of the free directions measures the distance, in standard deviations.
+          const Vector6d d = Difference(small, by_ceres);
+          const double sigmas = std::max(d.head<3>().norm() / b.rotation_sigma,
+                                         d.tail<3>().norm() / (b.direction_sigma * small.t.norm()));
+          farthest = std::max(farthest, sigmas);
+          EXPECT_LT(sigmas, 3e-3);
+        }
+      }
+    }
+  }
+  std::printf("[ measured ] farthest apart: %.2g standard deviations\n", farthest);
 }
 
 TEST(Refine, FixedScaleHoldsTheDistanceOfThePrior) {
