@@ -47,7 +47,7 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
     : rig_(rig), original_(GroupedOrder(rig.size(), matches)) {
   for (const RigCamera& camera : rig.cameras) {
     const PinholeCamera& c = camera.intrinsics;
-    unproject_.push_back(camera.Q * Eigen::Vector3d(1.0 / c.fx, 1.0 / c.fy, 1.0).asDiagonal());
+    unproject_.emplace_back(camera.Q * Eigen::Vector3d(1.0 / c.fx, 1.0 / c.fy, 1.0).asDiagonal());
   }
   const size_t n = matches.size();
   matches_.reserve(n);
