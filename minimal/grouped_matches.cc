@@ -3,15 +3,34 @@
 #include <algorithm>
 #include <numeric>
 
-#include "rigel/core/cheirality.h"
-#include "rigel/core/epipolar.h"
-
 namespace rigel {
 namespace {
 
-bool LiesBehind(const Pose& pose, const RayPair& rays, double min_sin_parallax) {
-  const Cheirality cheirality = TestCheirality(pose, rays, min_sin_parallax);
-  return cheirality == Cheirality::kBehind || cheirality == Cheirality::kMixed;
+using RowMajor3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+// R s_i + t - s_j: the same sum as in core, for the same bits.
+Eigen::Vector3d Baseline(const Rig& rig, const MatchGroup& group, const Pose& pose) {
+  return pose.R * rig.cameras[group.camera1].s + pose.t - rig.cameras[group.camera2].s;
+}
+
+// Positions of the matches sorted by camera1, then camera2: where they are not yet, by a stable
+// counting sort, camera2 first.
+std::vector<int> GroupedOrder(int num_cameras, const std::vector<Match>& matches) {
+  std::vector<int> order(matches.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto comes_first = [](const Match& a, const Match& b) {
+    return a.camera1 != b.camera1 ? a.camera1 < b.camera1 : a.camera2 < b.camera2;
+  };
+  if (std::is_sorted(matches.begin(), matches.end(), comes_first)) return order;
+  std::vector<int> sorted(matches.size());
+  for (int Match::*camera : {&Match::camera2, &Match::camera1}) {
+    std::vector<int> next(num_cameras + 1);
+    for (const Match& match : matches) ++next[match.*camera + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    for (const int k : order) sorted[next[matches[k].*camera]++] = k;
+    order.swap(sorted);
+  }
+  return order;
 }
 
 }  // namespace
@@ -24,34 +43,43 @@ std::vector<Match> EvenSubset(const std::vector<Match>& matches, size_t count) {
   return subset;
 }
 
-GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches) : rig_(rig) {
-  const int n = static_cast<int>(matches.size());
-  original_.resize(n);
-  std::iota(original_.begin(), original_.end(), 0);
-  std::stable_sort(original_.begin(), original_.end(), [&](int a, int b) {
-    const Match& m = matches[a];
-    const Match& o = matches[b];
-    return m.camera1 != o.camera1 ? m.camera1 < o.camera1 : m.camera2 < o.camera2;
-  });
+GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches)
+    : rig_(rig), original_(GroupedOrder(rig.size(), matches)) {
+  for (const RigCamera& camera : rig.cameras) {
+    const PinholeCamera& c = camera.intrinsics;
+    unproject_.emplace_back(camera.Q * Eigen::Vector3d(1.0 / c.fx, 1.0 / c.fy, 1.0).asDiagonal());
+  }
+  const size_t n = matches.size();
   matches_.reserve(n);
-  rays_.reserve(n);
-  pixels_.resize(4 * static_cast<size_t>(n));
-  for (int k = 0; k < n; ++k) {
+  pixels_.resize(4 * n + kKernelPadding);
+  directions_.resize(6 * n + kKernelPadding);
+  for (size_t k = 0; k < n; ++k) {
     const Match& m = matches[original_[k]];
     if (groups_.empty() || groups_.back().camera1 != m.camera1 ||
         groups_.back().camera2 != m.camera2) {
-      groups_.push_back({m.camera1, m.camera2, k, 0});
+      groups_.push_back({m.camera1, m.camera2, static_cast<int>(k), 0});
     }
     ++groups_.back().size;
     matches_.push_back(m);
-    rays_.push_back(MakeRayPair(rig, m));
     const PinholeCamera& c1 = rig.cameras[m.camera1].intrinsics;
     const PinholeCamera& c2 = rig.cameras[m.camera2].intrinsics;
     pixels_[k] = m.pixel1.x() - c1.cx;
     pixels_[n + k] = m.pixel1.y() - c1.cy;
     pixels_[2 * n + k] = m.pixel2.x() - c2.cx;
     pixels_[3 * n + k] = m.pixel2.y() - c2.cy;
+    const RayPair rays = MakeRayPair(rig, m);
+    for (int i = 0; i < 3; ++i) {
+      directions_[i * n + k] = rays.ray1.x[i];
+      directions_[(3 + i) * n + k] = rays.ray2.x[i];
+    }
   }
+}
+
+RayPair GroupedMatches::rays(int k) const {
+  const size_t n = matches_.size();
+  const double* x = directions_.data() + k;
+  return {{{x[0], x[n], x[2 * n]}, rig_.cameras[matches_[k].camera1].s},
+          {{x[3 * n], x[4 * n], x[5 * n]}, rig_.cameras[matches_[k].camera2].s}};
 }
 
 PixelArrays GroupedMatches::Pixels(const MatchGroup& group) const {
@@ -60,11 +88,29 @@ PixelArrays GroupedMatches::Pixels(const MatchGroup& group) const {
   return {x1, x1 + n, x1 + 2 * n, x1 + 3 * n, group.size};
 }
 
+RayArrays GroupedMatches::Directions(const MatchGroup& group) const {
+  const double* x1 = directions_.data() + group.begin;
+  const size_t n = matches_.size();
+  return {x1, x1 + n, x1 + 2 * n, x1 + 3 * n, x1 + 4 * n, x1 + 5 * n};
+}
+
+GroupMotion GroupedMatches::MotionOf(const MatchGroup& group, const Pose& pose,
+                                     double threshold_px) const {
+  GroupMotion motion;
+  Eigen::Map<RowMajor3d>(motion.R) = pose.R;
+  Eigen::Map<Eigen::Vector3d>(motion.b) = Baseline(rig_, group, pose);
+  const double min_sin_parallax = DecidedParallax(group, threshold_px);
+  motion.min_sin2 = min_sin_parallax * min_sin_parallax;
+  return motion;
+}
+
 Eigen::Matrix3d GroupedMatches::Fundamental(const MatchGroup& group, const Pose& pose) const {
-  const RigCamera& camera1 = rig_.cameras[group.camera1];
-  const RigCamera& camera2 = rig_.cameras[group.camera2];
-  return CentredFundamental(EssentialMatrix(pose, camera1, camera2), camera1.intrinsics,
-                            camera2.intrinsics);
+  // CentredFundamental() of EssentialMatrix(), with what is the same for all poses made once.
+  const Eigen::Vector3d b = Baseline(rig_, group, pose);
+  const Eigen::Matrix3d RA = pose.R * unproject_[group.camera1];
+  Eigen::Matrix3d bRA;
+  for (int k = 0; k < 3; ++k) bRA.col(k) = b.cross(RA.col(k));
+  return unproject_[group.camera2].transpose() * bRA;
 }
 
 double GroupedMatches::Score(const Pose& pose, double threshold_px, double bound,
@@ -72,10 +118,10 @@ double GroupedMatches::Score(const Pose& pose, double threshold_px, double bound
   *num_inliers = 0;
   double sum = 0.0;
   for (const MatchGroup& group : groups_) {
-    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = Fundamental(group, pose);
-    sum += TruncatedSampsonSum(Pixels(group), F.data(), threshold_px * threshold_px, bound - sum,
-                               num_inliers);
-    if (!(sum <= bound)) break;
+    if (sum > bound) break;
+    const RowMajor3d F = Fundamental(group, pose);
+    sum = TruncatedSampsonSum(Pixels(group), F.data(), threshold_px * threshold_px, bound, sum,
+                              num_inliers);
   }
   return sum;
 }
@@ -89,41 +135,27 @@ double GroupedMatches::DecidedParallax(const MatchGroup& group, double threshold
 double GroupedMatches::ScoreInFront(const Pose& pose, double threshold_px, double bound,
                                     int* num_inliers) const {
   *num_inliers = 0;
-  const double t2 = threshold_px * threshold_px;
   double sum = 0.0;
-  // Blocks of a fixed size, so that no memory has to be held for all errors.
-  constexpr int kBlock = 64;
-  double errors[kBlock];
   for (const MatchGroup& group : groups_) {
-    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = Fundamental(group, pose);
-    const double min_sin_parallax = DecidedParallax(group, threshold_px);
-    for (int begin = group.begin; begin < group.begin + group.size; begin += kBlock) {
-      const int size = std::min(kBlock, group.begin + group.size - begin);
-      SquaredSampsonErrors(Pixels({group.camera1, group.camera2, begin, size}), F.data(), errors);
-      for (int k = 0; k < size; ++k) {
-        const bool inlier = errors[k] < t2 && !LiesBehind(pose, rays_[begin + k], min_sin_parallax);
-        sum += inlier ? errors[k] : t2;
-        *num_inliers += inlier ? 1 : 0;
-      }
-      if (!(sum <= bound)) return sum;
-    }
+    if (sum > bound) break;
+    const RowMajor3d F = Fundamental(group, pose);
+    sum = TruncatedSampsonSumInFront(Pixels(group), Directions(group), F.data(),
+                                     MotionOf(group, pose, threshold_px),
+                                     threshold_px * threshold_px, bound, sum, num_inliers);
   }
   return sum;
 }
 
 int GroupedMatches::SelectInliers(const Pose& pose, double threshold_px,
                                   std::vector<double>* errors, std::vector<char>* inliers) const {
-  SquaredErrors(pose, errors);
+  errors->resize(matches_.size());
   inliers->resize(matches_.size());
-  const double t2 = threshold_px * threshold_px;
   int count = 0;
   for (const MatchGroup& group : groups_) {
-    const double min_sin_parallax = DecidedParallax(group, threshold_px);
-    for (int k = group.begin; k < group.begin + group.size; ++k) {
-      const bool inlier = (*errors)[k] < t2 && !LiesBehind(pose, rays_[k], min_sin_parallax);
-      (*inliers)[k] = inlier ? 1 : 0;
-      count += inlier ? 1 : 0;
-    }
+    const RowMajor3d F = Fundamental(group, pose);
+    count += SelectInFront(Pixels(group), Directions(group), F.data(),
+                           MotionOf(group, pose, threshold_px), threshold_px * threshold_px,
+                           errors->data() + group.begin, inliers->data() + group.begin);
   }
   return count;
 }
@@ -131,7 +163,7 @@ int GroupedMatches::SelectInliers(const Pose& pose, double threshold_px,
 void GroupedMatches::SquaredErrors(const Pose& pose, std::vector<double>* errors) const {
   errors->resize(matches_.size());
   for (const MatchGroup& group : groups_) {
-    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = Fundamental(group, pose);
+    const RowMajor3d F = Fundamental(group, pose);
     SquaredSampsonErrors(Pixels(group), F.data(), errors->data() + group.begin);
   }
 }

@@ -46,6 +46,12 @@ class GroupedMatches {
   // Centred pixels of a group.
   PixelArrays Pixels(const MatchGroup& group) const;
 
+  // Directions of a group's rays.
+  RayArrays Directions(const MatchGroup& group) const;
+
+  // What the depths of a group depend on under `pose`; they are undecided below DecidedParallax().
+  GroupMotion MotionOf(const MatchGroup& group, const Pose& pose, double threshold_px) const;
+
   // The group's centred fundamental matrix under `pose`.
   Eigen::Matrix3d Fundamental(const MatchGroup& group, const Pose& pose) const;
 
@@ -55,7 +61,7 @@ class GroupedMatches {
 
   // The same where a match that lies behind a camera counts as an outlier too. An outlier far from
   // where its point could be has much leverage, and half of those that an estimate could bend
-  // to would lie behind a camera. Never below Score().
+  // to would lie behind a camera. Never below Score(), to the last bit.
   double ScoreInFront(const Pose& pose, double threshold_px, double bound, int* num_inliers) const;
 
   // 1 for matches of a Sampson error below the threshold that do not lie behind a camera, else 0,
@@ -65,7 +71,7 @@ class GroupedMatches {
                     std::vector<char>* inliers) const;
 
   // The rays of the match at grouped position k in the body frames.
-  const RayPair& rays(int k) const { return rays_[k]; }
+  RayPair rays(int k) const;
 
   // A sine of parallax in the match's group that noise of this threshold cannot make.
   double DecidedParallax(const MatchGroup& group, double threshold_px) const;
@@ -78,8 +84,9 @@ class GroupedMatches {
   std::vector<MatchGroup> groups_;
   std::vector<Match> matches_;
   std::vector<int> original_;
-  std::vector<RayPair> rays_;
-  std::vector<double> pixels_;  // x1 of all, then y1, x2, y2
+  std::vector<Eigen::Matrix3d> unproject_;  // of each camera: Q diag(1 / fx, 1 / fy, 1)
+  // x1 of all, then y1, x2, y2; the six coordinates of the directions likewise.
+  std::vector<double> pixels_, directions_;
 };
 
 }  // namespace rigel

@@ -5,8 +5,25 @@
 namespace rigel {
 namespace {
 
-inline void NumeratorAndGradient(const double F[9], double x1, double y1, double x2, double y2,
-                                 double* C2, double* g2) {
+// So many matches at a time; their sum is a tree of a fixed form, so it does not depend on the
+// width of the vectors.
+constexpr int kBlock = 32;
+
+// `size`, at most kBlock, rounded up to whole vectors of any path: no loop has a rest.
+RIGEL_KERNEL_BODY int Rounded(int size) {
+  return (size + (kKernelPadding - 1)) / kKernelPadding * kKernelPadding;
+}
+
+// The matches from `begin` on, at most kBlock of them.
+RIGEL_KERNEL_BODY PixelArrays BlockAt(const PixelArrays& p, int begin) {
+  const int size = p.size - begin < kBlock ? p.size - begin : kBlock;
+  return {p.x1 + begin, p.y1 + begin, p.x2 + begin, p.y2 + begin, size};
+}
+
+// C^2 and the squared norm of its gradient; their quotient is r^2.
+RIGEL_KERNEL_BODY void NumeratorAndGradient(const PixelArrays& p, int i, const double F[9],
+                                            double* C2, double* g2) {
+  const double x1 = p.x1[i], y1 = p.y1[i], x2 = p.x2[i], y2 = p.y2[i];
   const double a0 = F[0] * x1 + F[1] * y1 + F[2];
   const double a1 = F[3] * x1 + F[4] * y1 + F[5];
   const double a2 = F[6] * x1 + F[7] * y1 + F[8];
@@ -17,56 +34,171 @@ inline void NumeratorAndGradient(const double F[9], double x1, double y1, double
   *g2 = (a0 * a0 + a1 * a1) + (b0 * b0 + b1 * b1);
 }
 
-}  // namespace
+RIGEL_KERNEL_BODY void TruncatedErrors(const PixelArrays& block, const double F[9], double t2,
+                                       double e[kBlock]) {
+  for (int i = 0; i < Rounded(block.size); ++i) {
+    double C2, g2;
+    NumeratorAndGradient(block, i, F, &C2, &g2);
+    const double r2 = C2 / g2;
+    // A NaN fails the comparison and counts t2.
+    e[i] = r2 < t2 ? r2 : t2;
+  }
+}
 
-double TruncatedSampsonSum(const PixelArrays& pixels, const double F[9], double t2, double bound,
-                           int* num_inliers) {
-  // Blocks that the compiler turns into vector code; the order of the additions is fixed, so the
-  // sum does not depend on the width of the vectors.
-  constexpr int kBlock = 32;
-  double sum = 0.0;
-  int count = 0;
-  int k = 0;
-  for (; k + kBlock <= pixels.size; k += kBlock) {
+RIGEL_KERNEL_BODY void Errors(const PixelArrays& block, const double F[9], double e[kBlock]) {
+  for (int i = 0; i < Rounded(block.size); ++i) {
+    double C2, g2;
+    NumeratorAndGradient(block, i, F, &C2, &g2);
+    const double r2 = C2 / g2;
+    e[i] = g2 > 0 ? r2 : std::numeric_limits<double>::infinity();
+  }
+}
+
+// Sets e to t2 where the match at begin + i lies behind a camera: the test of cheirality.cc, and
+// its names.
+RIGEL_KERNEL_BODY void RejectBehind(const RayArrays& rays, int begin, int size,
+                                    const GroupMotion& m, double t2, double e[kBlock]) {
+  for (int i = 0; i < Rounded(size); ++i) {
+    const int k = begin + i;
+    const double x = rays.x1[k], y = rays.y1[k], z = rays.z1[k];
+    const double fx = rays.x2[k], fy = rays.y2[k], fz = rays.z2[k];
+    const double gx = m.R[0] * x + m.R[1] * y + m.R[2] * z;
+    const double gy = m.R[3] * x + m.R[4] * y + m.R[5] * z;
+    const double gz = m.R[6] * x + m.R[7] * y + m.R[8] * z;
+    const double nx = gy * fz - gz * fy;
+    const double ny = gz * fx - gx * fz;
+    const double nz = gx * fy - gy * fx;
+    const double sin2 = nx * nx + ny * ny + nz * nz;
+    const double n1 = (fy * m.b[2] - fz * m.b[1]) * nx + (fz * m.b[0] - fx * m.b[2]) * ny +
+                      (fx * m.b[1] - fy * m.b[0]) * nz;
+    const double n2 = (gy * m.b[2] - gz * m.b[1]) * nx + (gz * m.b[0] - gx * m.b[2]) * ny +
+                      (gx * m.b[1] - gy * m.b[0]) * nz;
+    const double error = e[i];
+    double kept = n1 > 0 ? error : t2;
+    kept = n2 > 0 ? kept : t2;
+    // A NaN of sin2 is undecided.
+    e[i] = sin2 > m.min_sin2 ? kept : error;
+  }
+}
+
+// `rays` and `motion` are null where depths are not looked at.
+RIGEL_KERNEL_BODY double Sum(const PixelArrays& pixels, const RayArrays* rays, const double F[9],
+                             const GroupMotion* motion, double t2, double bound, double sum,
+                             int* num_inliers) {
+  int inliers = 0;
+  for (int begin = 0; begin < pixels.size && !(sum > bound); begin += kBlock) {
+    const PixelArrays block = BlockAt(pixels, begin);
     double e[kBlock];
-    for (int i = 0; i < kBlock; ++i) {
-      double C2, g2;
-      NumeratorAndGradient(F, pixels.x1[k + i], pixels.y1[k + i], pixels.x2[k + i],
-                           pixels.y2[k + i], &C2, &g2);
-      const double r2 = C2 / g2;
-      // A NaN fails the comparison and counts t2.
-      e[i] = r2 < t2 ? r2 : t2;
-    }
-    double lanes[4] = {0, 0, 0, 0};
-    for (int i = 0; i < kBlock; i += 4) {
-      for (int j = 0; j < 4; ++j) lanes[j] += e[i + j];
-    }
-    int inliers = 0;
-    for (int i = 0; i < kBlock; ++i) inliers += e[i] < t2 ? 1 : 0;
-    count += inliers;
-    sum += (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
-    if (sum > bound) break;
+    TruncatedErrors(block, F, t2, e);
+    if (rays != nullptr) RejectBehind(*rays, begin, block.size, *motion, t2, e);
+    // What is not there counts as an outlier, and then adds nothing.
+    for (int i = block.size; i < kBlock; ++i) e[i] = t2;
+    int count = 0;
+    for (int i = 0; i < kBlock; ++i) count += e[i] < t2 ? 1 : 0;
+    inliers += count;
+    for (int i = block.size; i < kBlock; ++i) e[i] = 0.0;
+    for (int i = 0; i < 16; ++i) e[i] += e[i + 16];
+    for (int i = 0; i < 8; ++i) e[i] += e[i + 8];
+    sum += ((e[0] + e[4]) + (e[2] + e[6])) + ((e[1] + e[5]) + (e[3] + e[7]));
   }
-  if (sum <= bound) {
-    for (; k < pixels.size; ++k) {
-      double C2, g2;
-      NumeratorAndGradient(F, pixels.x1[k], pixels.y1[k], pixels.x2[k], pixels.y2[k], &C2, &g2);
-      const double r2 = C2 / g2;
-      const bool inlier = r2 < t2;
-      sum += inlier ? r2 : t2;
-      count += inlier ? 1 : 0;
-    }
-  }
-  *num_inliers += count;
+  *num_inliers += inliers;
   return sum;
 }
 
-void SquaredSampsonErrors(const PixelArrays& pixels, const double F[9], double* squared_errors) {
-  for (int k = 0; k < pixels.size; ++k) {
-    double C2, g2;
-    NumeratorAndGradient(F, pixels.x1[k], pixels.y1[k], pixels.x2[k], pixels.y2[k], &C2, &g2);
-    squared_errors[k] = g2 > 0 ? C2 / g2 : std::numeric_limits<double>::infinity();
+RIGEL_KERNEL_BODY void AllErrors(const PixelArrays& pixels, const double F[9],
+                                 double* squared_errors) {
+  for (int begin = 0; begin < pixels.size; begin += kBlock) {
+    const PixelArrays block = BlockAt(pixels, begin);
+    double e[kBlock];
+    Errors(block, F, e);
+    for (int i = 0; i < block.size; ++i) squared_errors[begin + i] = e[i];
   }
+}
+
+RIGEL_KERNEL_BODY int Select(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
+                             const GroupMotion& motion, double t2, double* squared_errors,
+                             char* inliers) {
+  int total = 0;
+  for (int begin = 0; begin < pixels.size; begin += kBlock) {
+    const PixelArrays block = BlockAt(pixels, begin);
+    double e[kBlock];
+    Errors(block, F, e);
+    for (int i = 0; i < block.size; ++i) squared_errors[begin + i] = e[i];
+    RejectBehind(rays, begin, block.size, motion, t2, e);
+    int count = 0;
+    for (int i = 0; i < block.size; ++i) {
+      const bool inlier = e[i] < t2;
+      inliers[begin + i] = inlier ? 1 : 0;
+      count += inlier ? 1 : 0;
+    }
+    total += count;
+  }
+  return total;
+}
+
+#if RIGEL_HAS_AVX2_PATH
+RIGEL_TARGET_AVX2 double SumAvx2(const PixelArrays& pixels, const double F[9], double t2,
+                                 double bound, double sum, int* num_inliers) {
+  return Sum(pixels, nullptr, F, nullptr, t2, bound, sum, num_inliers);
+}
+
+RIGEL_TARGET_AVX2 double SumInFrontAvx2(const PixelArrays& pixels, const RayArrays& rays,
+                                        const double F[9], const GroupMotion& motion, double t2,
+                                        double bound, double sum, int* num_inliers) {
+  return Sum(pixels, &rays, F, &motion, t2, bound, sum, num_inliers);
+}
+
+RIGEL_TARGET_AVX2 void AllErrorsAvx2(const PixelArrays& pixels, const double F[9],
+                                     double* squared_errors) {
+  AllErrors(pixels, F, squared_errors);
+}
+
+RIGEL_TARGET_AVX2 int SelectAvx2(const PixelArrays& pixels, const RayArrays& rays,
+                                 const double F[9], const GroupMotion& motion, double t2,
+                                 double* squared_errors, char* inliers) {
+  return Select(pixels, rays, F, motion, t2, squared_errors, inliers);
+}
+#endif
+
+}  // namespace
+
+double TruncatedSampsonSum(const PixelArrays& pixels, const double F[9], double t2, double bound,
+                           double sum, int* num_inliers, [[maybe_unused]] CpuPath path) {
+#if RIGEL_HAS_AVX2_PATH
+  if (path == CpuPath::kAvx2) return SumAvx2(pixels, F, t2, bound, sum, num_inliers);
+#endif
+  return Sum(pixels, nullptr, F, nullptr, t2, bound, sum, num_inliers);
+}
+
+double TruncatedSampsonSumInFront(const PixelArrays& pixels, const RayArrays& rays,
+                                  const double F[9], const GroupMotion& motion, double t2,
+                                  double bound, double sum, int* num_inliers,
+                                  [[maybe_unused]] CpuPath path) {
+#if RIGEL_HAS_AVX2_PATH
+  if (path == CpuPath::kAvx2) {
+    return SumInFrontAvx2(pixels, rays, F, motion, t2, bound, sum, num_inliers);
+  }
+#endif
+  return Sum(pixels, &rays, F, &motion, t2, bound, sum, num_inliers);
+}
+
+void SquaredSampsonErrors(const PixelArrays& pixels, const double F[9], double* squared_errors,
+                          [[maybe_unused]] CpuPath path) {
+#if RIGEL_HAS_AVX2_PATH
+  if (path == CpuPath::kAvx2) return AllErrorsAvx2(pixels, F, squared_errors);
+#endif
+  AllErrors(pixels, F, squared_errors);
+}
+
+int SelectInFront(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
+                  const GroupMotion& motion, double t2, double* squared_errors, char* inliers,
+                  [[maybe_unused]] CpuPath path) {
+#if RIGEL_HAS_AVX2_PATH
+  if (path == CpuPath::kAvx2) {
+    return SelectAvx2(pixels, rays, F, motion, t2, squared_errors, inliers);
+  }
+#endif
+  return Select(pixels, rays, F, motion, t2, squared_errors, inliers);
 }
 
 }  // namespace rigel

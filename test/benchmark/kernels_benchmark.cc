@@ -74,6 +74,123 @@ void BM_Score(benchmark::State& state) {
 }
 BENCHMARK(BM_Score)->Arg(626)->Arg(2500);
 
+// The rows below are of one group, Arg(0) on the baseline path and Arg(1) on the best.
+struct OneGroup {
+  explicit OneGroup(const benchmark::State& state)
+      : pair(ScenePair(kSize, 0.0, 0.5, MotionPattern::kRandom)),
+        path(state.range(0) == 0 ? CpuPath::kBaseline : BestCpuPath()) {
+    for (Match& match : pair.matches) match.camera1 = match.camera2 = 0;
+    matches = GroupedMatches(pair.rig, pair.matches);
+    group = matches.groups()[0];
+    F = matches.Fundamental(group, *pair.truth);
+    motion = matches.MotionOf(group, *pair.truth, 1.5);
+  }
+
+  static constexpr int kSize = 1000;
+  FramePair pair;
+  CpuPath path;
+  GroupedMatches matches;
+  MatchGroup group;
+  Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F;
+  GroupMotion motion;
+};
+
+void BM_TruncatedSum(benchmark::State& state) {
+  const OneGroup g(state);
+  int inliers = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(TruncatedSampsonSum(g.matches.Pixels(g.group), g.F.data(), 2.25, 1e300,
+                                                 0.0, &inliers, g.path));
+  }
+  state.SetItemsProcessed(state.iterations() * OneGroup::kSize);
+}
+BENCHMARK(BM_TruncatedSum)->Arg(0)->Arg(1);
+
+void BM_TruncatedSumInFront(benchmark::State& state) {
+  const OneGroup g(state);
+  int inliers = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        TruncatedSampsonSumInFront(g.matches.Pixels(g.group), g.matches.Directions(g.group),
+                                   g.F.data(), g.motion, 2.25, 1e300, 0.0, &inliers, g.path));
+  }
+  state.SetItemsProcessed(state.iterations() * OneGroup::kSize);
+}
+BENCHMARK(BM_TruncatedSumInFront)->Arg(0)->Arg(1);
+
+void BM_SquaredErrors(benchmark::State& state) {
+  const OneGroup g(state);
+  std::vector<double> errors(OneGroup::kSize);
+  for (auto _ : state) {
+    SquaredSampsonErrors(g.matches.Pixels(g.group), g.F.data(), errors.data(), g.path);
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * OneGroup::kSize);
+}
+BENCHMARK(BM_SquaredErrors)->Arg(0)->Arg(1);
+
+void BM_SelectInFront(benchmark::State& state) {
+  const OneGroup g(state);
+  std::vector<double> errors(OneGroup::kSize);
+  std::vector<char> inliers(OneGroup::kSize);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(SelectInFront(g.matches.Pixels(g.group), g.matches.Directions(g.group),
+                                           g.F.data(), g.motion, 2.25, errors.data(),
+                                           inliers.data(), g.path));
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * OneGroup::kSize);
+}
+BENCHMARK(BM_SelectInFront)->Arg(0)->Arg(1);
+
+void BM_ScoreInFront(benchmark::State& state) {
+  const FramePair pair =
+      ScenePair(static_cast<int>(state.range(0)), 0.5, 0.5, MotionPattern::kRandom);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  int inliers = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(matches.ScoreInFront(*pair.truth, 1.5, 1e300, &inliers));
+  }
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(BM_ScoreInFront)->Arg(626)->Arg(2500);
+
+void BM_SelectInliers(benchmark::State& state) {
+  const FramePair pair =
+      ScenePair(static_cast<int>(state.range(0)), 0.5, 0.5, MotionPattern::kRandom);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  std::vector<double> errors;
+  std::vector<char> inliers;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(matches.SelectInliers(*pair.truth, 1.5, &errors, &inliers));
+  }
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(BM_SelectInliers)->Arg(626)->Arg(2500);
+
+void BM_GroupMatches(benchmark::State& state) {
+  const FramePair pair =
+      ScenePair(static_cast<int>(state.range(0)), 0.5, 0.5, MotionPattern::kRandom);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(GroupedMatches(pair.rig, pair.matches).size());
+  }
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(BM_GroupMatches)->Arg(626)->Arg(2500);
+
+// Of each hypothesis, whatever the number of matches.
+void BM_Fundamental(benchmark::State& state) {
+  const FramePair pair = ScenePair(100, 0.5, 0.5, MotionPattern::kRandom);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  for (auto _ : state) {
+    for (const MatchGroup& group : matches.groups()) {
+      benchmark::DoNotOptimize(matches.Fundamental(group, *pair.truth));
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(matches.groups().size()));
+}
+BENCHMARK(BM_Fundamental);
+
 void BM_SampsonJacobian(benchmark::State& state) {
   const FramePair pair = ScenePair(600, 0.5, 0.5, MotionPattern::kRandom);
   const GroupedMatches matches(pair.rig, pair.matches);

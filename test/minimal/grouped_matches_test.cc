@@ -225,7 +225,7 @@ TEST(GroupedMatches, ScoreInFrontCountsMatchesBehindAsOutliers) {
         EXPECT_NEAR(score, expected, 1e-9 * expected);
         EXPECT_EQ(inliers, expected_inliers);
         int all_inliers = 0;
-        EXPECT_GE(score * (1 + 1e-12), grouped.Score(pose, kThreshold, kInf, &all_inliers));
+        EXPECT_GE(score, grouped.Score(pose, kThreshold, kInf, &all_inliers));
         EXPECT_LE(inliers, all_inliers);
         behind += all_inliers - inliers;
         // The bound, as of Score().
@@ -324,32 +324,6 @@ TEST(GroupedMatches, NoMatches) {
   EXPECT_EQ(inliers, 0);
   EXPECT_EQ(grouped.size(), 0);
   EXPECT_TRUE(grouped.groups().empty());
-}
-
-TEST(ScoreKernel, StopsWithinAGroup) {
-  // Most rigs have few camera pairs: to stop between groups only would save nothing.
-  const FramePair pair = MakePair(3000, 10);
-  const GroupedMatches grouped(pair.rig, pair.matches);
-  const MatchGroup& group = grouped.groups()[0];
-  ASSERT_GT(group.size, 300);
-  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = Eigen::Matrix3d::Zero();
-  int inliers = 0;
-  const double sum = TruncatedSampsonSum(grouped.Pixels(group), F.data(), 1.0, 40.0, &inliers);
-  EXPECT_GT(sum, 40.0);
-  EXPECT_LE(sum, 100.0) << "each match counts 1";
-}
-
-TEST(ScoreKernel, InliersAreAddedToTheCount) {
-  const FramePair pair = MakePair(100, 8);
-  const GroupedMatches grouped(pair.rig, pair.matches);
-  const MatchGroup& group = grouped.groups()[0];
-  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = grouped.Fundamental(group, *pair.truth);
-  int once = 0;
-  TruncatedSampsonSum(grouped.Pixels(group), F.data(), 2.25, kInf, &once);
-  ASSERT_GT(once, 0);
-  int twice = 7;
-  TruncatedSampsonSum(grouped.Pixels(group), F.data(), 2.25, kInf, &twice);
-  EXPECT_EQ(twice, once + 7);
 }
 
 }  // namespace
