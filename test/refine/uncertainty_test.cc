@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -186,6 +187,21 @@ TEST(Uncertainty, SigmasAreThoseOfTheBlocks) {
   pose.t = {0, 0, -2};
   const Matrix6d information = covariance.inverse();
   EXPECT_NEAR(RelativeScaleSigma(information, pose), 2.5, 1e-9);
+}
+
+// Known directions in, the same directions in words out.
+TEST(Uncertainty, TheWeakestDirectionIsSaidInWords) {
+  Matrix6d covariance = 1e-10 * Matrix6d::Identity();
+  Vector6d v;
+  v << 0, 2e-3, 0, -0.06, 0, 0.08;
+  covariance += v * v.transpose();
+  EXPECT_EQ(WeakestDirection(covariance, {0, 0, 1}),
+            "turn by 0.115 deg about (0.0, 1.0, 0.0) with t by 0.1 m along (-0.6, 0.0, 0.8)");
+  EXPECT_EQ(WeakestDirection(covariance, {0, 0, 0}), "");
+  // t counts as a share of |t|: 0.1 m of 100 m is less than the rotation's own 0.2 deg.
+  covariance(0, 0) = std::pow(DegToRad(0.2), 2);
+  EXPECT_THAT(WeakestDirection(covariance, {0, 0, 100}),
+              testing::StartsWith("turn by 0.2 deg about (1.0, 0.0, 0.0)"));
 }
 
 TEST(Uncertainty, ParallaxIsWhatTheRotationDoesNotExplain) {

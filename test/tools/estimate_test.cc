@@ -143,7 +143,6 @@ TEST_F(EstimateTest, PriorThatCannotBeWeighedIsToldOnce) {
   EXPECT_THAT(errors({"--solver=4pt"}), ElementsAre(HasSubstr("in 3 of 3 pairs")));
   EXPECT_THAT(errors({"--solver=17pt-li"}), ElementsAre(StartsWith("--use_prior_in_refine: ")));
   EXPECT_THAT(errors({"--prior_sigma_deg=0.1"}), IsEmpty());
-  EXPECT_THAT(errors({"--refine=none"}), IsEmpty());  // nothing to weigh it in
   EXPECT_THAT(errors({"--nouse_prior_in_refine"}), IsEmpty());
 }
 
