@@ -193,7 +193,7 @@ std::string ComparisonJson(const ComparisonReport& report,
       text += k == 0 ? "\n    " : ",\n    ";
       text += PairJson(report, k).dump(-1, ' ', false, Json::error_handler_t::replace);
     }
-    text += "\n  ]\n}";
+    text += report.solvers.front().pairs.empty() ? "]\n}" : "\n  ]\n}";
   }
   return text + "\n";
 }

@@ -116,7 +116,10 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
   json["format"] = "rigel-estimate 1";
   json["options"] = Json::object();
   for (const auto& [name, value] : report.options) json["options"][name] = value;
-  json["pairs"] = Json::array();
+  // Pair by pair: a tree of many would be large.
+  std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
+  text.resize(text.size() - 2);  // the line break and bracket of the end
+  text += ",\n  \"pairs\": [";
   for (size_t k = 0; k < pairs.size(); ++k) {
     const MotionEstimate& e = report.estimates[k];
     Json entry;
@@ -155,9 +158,13 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
         PutFinite("relative_scale_sd", r.relative_scale_sigma, &entry);
       }
     }
-    json["pairs"].push_back(entry);
+    text += k == 0 ? "\n    " : ",\n    ";
+    for (const char c : entry.dump(2, ' ', false, Json::error_handler_t::replace)) {
+      text += c;
+      if (c == '\n') text += "    ";
+    }
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return text + (pairs.empty() ? "]\n}\n" : "\n  ]\n}\n");
 }
 
 std::string EstimateCsv(const EstimateReport& report, bool times) {

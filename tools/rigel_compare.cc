@@ -66,8 +66,11 @@ bool Write(ComparisonReport* report, bool by_sequence) {
     ok = FlushStdout();
   }
   const bool per_pair = FLAGS_per_pair || report->shard.has_value();
-  ok = WriteOutput(FLAGS_json, ComparisonJson(*report, summaries, per_pair)) && ok;
-  return WriteOutput(FLAGS_csv, ComparisonCsv(report->solvers)) && ok;
+  if (!FLAGS_json.empty()) {
+    ok = WriteOutput(FLAGS_json, ComparisonJson(*report, summaries, per_pair)) && ok;
+  }
+  if (!FLAGS_csv.empty()) ok = WriteOutput(FLAGS_csv, ComparisonCsv(report->solvers)) && ok;
+  return ok;
 }
 
 int Merge() {

@@ -119,8 +119,9 @@ int Run() {
   std::vector<std::string> output_flags = OutputFlags();
   output_flags.push_back("g2o");
   report.options = FlagValues(output_flags);
-  ok = WriteOutput(FLAGS_json, EstimateJson(report, TimesAreGiven())) && ok;
-  ok = WriteOutput(FLAGS_csv, EstimateCsv(report, TimesAreGiven())) && ok;
+  const bool times = TimesAreGiven();
+  if (!FLAGS_json.empty()) ok = WriteOutput(FLAGS_json, EstimateJson(report, times)) && ok;
+  if (!FLAGS_csv.empty()) ok = WriteOutput(FLAGS_csv, EstimateCsv(report, times)) && ok;
   if (!FLAGS_g2o.empty()) {
     std::vector<std::string> notes;
     const std::string graph = FormatG2o(report.pairs, report.estimates, positions, &notes);
