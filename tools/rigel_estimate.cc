@@ -84,22 +84,23 @@ int Run() {
     result.estimate.refine.inliers = std::vector<char>();
     return result;
   };
-  EstimateReport report;
-  std::vector<int> positions;
+  std::vector<BatchItem<Estimated>> items;
   {
     Progress progress(FLAGS_solver, static_cast<int>(input.paths.size()));
-    for (BatchItem<Estimated>& item :
-         RunBatch(options, input.paths, input.first, work, [&] { progress.Step(); })) {
-      if (!item.error.empty()) {
-        std::cerr << PrintablePath(item.error) << "\n";
-        ok = false;
-        continue;
-      }
-      positions.push_back(item.position);
-      report.pairs.push_back(std::move(item.pair));
-      report.matches.push_back(item.result.matches);
-      report.estimates.push_back(std::move(item.result.estimate));
+    items = RunBatch(options, input.paths, input.first, work, [&] { progress.Step(); });
+  }
+  EstimateReport report;
+  std::vector<int> positions;
+  for (BatchItem<Estimated>& item : items) {
+    if (!item.error.empty()) {
+      std::cerr << PrintablePath(item.error) << "\n";
+      ok = false;
+      continue;
     }
+    positions.push_back(item.position);
+    report.pairs.push_back(std::move(item.pair));
+    report.matches.push_back(item.result.matches);
+    report.estimates.push_back(std::move(item.result.estimate));
   }
   // A shard may have nothing to report, the whole may not.
   if (report.pairs.empty() && !input.shard) return kExitFailed;
