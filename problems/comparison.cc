@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <Eigen/Cholesky>
 
 #include "rigel/core/angles.h"
 #include "rigel/core/metrics.h"
+#include "rigel/problems/cramer_rao.h"
 #include "rigel/problems/parallel.h"
 
 namespace rigel {
@@ -50,7 +52,10 @@ void FillNees(const Pose& truth, const MotionEstimate& estimate, RefineForm form
   result->nees_dof = static_cast<int>(basis.cols());
 }
 
-PairResult RunPair(const FramePair& pair, const EstimateOptions& options, bool use_stated_noise) {
+}  // namespace
+
+PairResult ComparePair(const FramePair& pair, const EstimateOptions& options,
+                       bool use_stated_noise) {
   PairResult result;
   result.name = pair.name;
   result.sequence = pair.sequence;
@@ -76,13 +81,16 @@ PairResult RunPair(const FramePair& pair, const EstimateOptions& options, bool u
     RefineOptions bound_options = options.refine;
     bound_options.prior_kind = FindSolver(options.solver)->prior;
     bound_options.threshold_px = options.ransac.threshold_px;
-    result.bound = ComputeCramerRaoBound(bound_options, pair);
+    if (const auto bound = ComputeCramerRaoBound(bound_options, pair)) {
+      result.bound = MotionBound{bound->rotation, {}};
+      if (pair.truth->t.norm() > kMinTrueTranslation && std::isfinite(bound->direction)) {
+        result.bound->direction = bound->direction;
+      }
+    }
     FillNees(*pair.truth, estimate, options.refine.form, &result);
   }
   return result;
 }
-
-}  // namespace
 
 bool ParseMatchUse(std::string_view name, MatchUse* use) {
   if (name == "all") {
@@ -110,23 +118,12 @@ bool HasInterCameraMatches(const FramePair& pair) {
                      [](const Match& m) { return !m.IsIntra(); });
 }
 
-std::vector<std::string> SolversForPairs(const std::vector<FramePair>& pairs) {
-  std::vector<std::string> names;
-  for (const SolverInfo& solver : SolverCatalogue()) {
-    const bool all = std::all_of(pairs.begin(), pairs.end(), [&](const FramePair& pair) {
-      return HasPrior(pair.prior, solver.prior);
-    });
-    if (all) names.emplace_back(solver.name);
-  }
-  return names;
-}
-
 std::vector<PairResult> RunSolver(const std::vector<FramePair>& pairs,
                                   const EstimateOptions& options, int num_threads,
                                   const std::function<void()>& progress, bool use_stated_noise) {
   std::vector<PairResult> results(pairs.size());
   ParallelFor(static_cast<int>(pairs.size()), num_threads, [&](int k) {
-    results[k] = RunPair(pairs[k], options, use_stated_noise);
+    results[k] = ComparePair(pairs[k], options, use_stated_noise);
     if (progress) progress();
   });
   return results;
@@ -158,7 +155,10 @@ SolverSummary Summarize(const std::string& solver, const std::string& sequence,
     }
     if (result.bound) {
       bound_rotation.push_back(RadToDeg(result.bound->rotation));
-      bound_direction.push_back(RadToDeg(result.bound->direction));
+      // Of the pairs whose errors it is held against.
+      if (result.bound->direction && result.refined && result.refined->direction) {
+        bound_direction.push_back(RadToDeg(*result.bound->direction));
+      }
     }
     if (result.nees) {
       nees += *result.nees;
@@ -167,8 +167,8 @@ SolverSummary Summarize(const std::string& solver, const std::string& sequence,
     }
     inlier_ratio.push_back(result.inlier_ratio);
     iterations.push_back(result.iterations);
-    ransac_ms.push_back(result.ransac_ms);
-    refine_ms.push_back(result.refine_ms);
+    if (result.ransac_ms) ransac_ms.push_back(*result.ransac_ms);
+    if (result.refine_ms) refine_ms.push_back(*result.refine_ms);
   }
   const size_t solved = static_cast<size_t>(summary.pairs - summary.failures);
   // A statistic over less than half of the pairs would speak of a selection.
@@ -184,7 +184,7 @@ SolverSummary Summarize(const std::string& solver, const std::string& sequence,
   if (summary.raw_direction_deg) summary.direction_pairs = static_cast<int>(direction[0].size());
   if (bound_rotation.size() == solved) {
     summary.bound_rotation_deg = ComputeStatistics(bound_rotation);
-    summary.bound_direction_deg = ComputeStatistics(bound_direction);
+    summary.bound_direction_deg = in_most(bound_direction);
   }
   if (2 * static_cast<size_t>(nees_pairs) > solved) {
     constexpr double kHalfPercent = 2.5758;  // of the normal distribution is beyond
@@ -195,9 +195,26 @@ SolverSummary Summarize(const std::string& solver, const std::string& sequence,
   }
   summary.inlier_ratio = ComputeStatistics(inlier_ratio);
   summary.iterations = ComputeStatistics(iterations);
-  summary.ransac_ms = ComputeStatistics(ransac_ms);
-  summary.refine_ms = ComputeStatistics(refine_ms);
+  if (ransac_ms.size() == solved) summary.ransac_ms = ComputeStatistics(ransac_ms);
+  if (refine_ms.size() == solved) summary.refine_ms = ComputeStatistics(refine_ms);
   return summary;
+}
+
+std::vector<SolverSummary> SummarizeAll(const std::vector<SolverResults>& solvers,
+                                        bool by_sequence) {
+  std::vector<SolverSummary> summaries;
+  for (const SolverResults& results : solvers) {
+    summaries.push_back(Summarize(results.solver, "all", results.pairs));
+    if (!by_sequence) continue;
+    std::map<std::string, std::vector<PairResult>> sequences;
+    for (const PairResult& r : results.pairs) {
+      if (!r.sequence.empty()) sequences[r.sequence].push_back(r);
+    }
+    for (const auto& [sequence, group] : sequences) {
+      summaries.push_back(Summarize(results.solver, sequence, group));
+    }
+  }
+  return summaries;
 }
 
 }  // namespace rigel

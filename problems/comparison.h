@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "rigel/core/frame_pair.h"
-#include "rigel/problems/cramer_rao.h"
 #include "rigel/problems/prior_source.h"
 #include "rigel/problems/statistics.h"
 #include "rigel/refine/estimate_motion.h"
@@ -45,21 +44,26 @@ struct MotionErrors {
   std::optional<double> scale;  // fraction
 };
 
+// The part of a CramerRaoBound that reports give.
+struct MotionBound {
+  double rotation = 0.0;            // radians
+  std::optional<double> direction;  // none where the true motion has none
+};
+
 struct PairResult {
   std::string name;
   std::string sequence;
   EstimateStatus status = EstimateStatus::kNotRun;
   std::string message;
   std::optional<MotionErrors> raw, refined;
-  std::optional<CramerRaoBound> bound;
+  std::optional<MotionBound> bound;
   // Normalized estimation error squared: the refined error in units of its stated covariance. Its
   // mean over many pairs is the degrees of freedom if the covariance is right.
   std::optional<double> nees;
   int nees_dof = 0;  // 6, or 5 where |t| was held
   double inlier_ratio = 0.0;
   int iterations = 0;
-  double ransac_ms = 0.0;
-  double refine_ms = 0.0;
+  std::optional<double> ransac_ms, refine_ms;  // none where times are left out
 
   // No estimate, or one that could not be refined where that was asked for.
   bool failed = true;
@@ -68,17 +72,22 @@ struct PairResult {
 // Below this the true motion has no direction that an estimate could be held to, metres.
 inline constexpr double kMinTrueTranslation = 1e-2;
 
-// The names of the catalogue whose prior every pair has.
-std::vector<std::string> SolversForPairs(const std::vector<FramePair>& pairs);
+// Runs one solver on a pair (already selected and with its prior applied). The noise that the pair
+// states is the refinement's, unless `use_stated_noise` is false.
+PairResult ComparePair(const FramePair& pair, const EstimateOptions& options,
+                       bool use_stated_noise);
 
-// Runs one solver over all pairs (already selected and with priors applied). Results in input order
-// and the same for any number of threads, but for the times. `progress` (may be empty) is called
-// after each pair, from any thread. The noise that a pair states is the refinement's, unless
-// `use_stated_noise` is false.
+// The same for all of `pairs`. Results in input order and the same for any number of threads, but
+// for the times. `progress` (may be empty) is called after each pair, from any thread.
 std::vector<PairResult> RunSolver(const std::vector<FramePair>& pairs,
                                   const EstimateOptions& options, int num_threads,
                                   const std::function<void()>& progress,
                                   bool use_stated_noise = true);
+
+struct SolverResults {
+  std::string solver;
+  std::vector<PairResult> pairs;
+};
 
 // What a report says of one solver over a group of pairs (docs/formats.md).
 struct SolverSummary {
@@ -99,6 +108,10 @@ struct SolverSummary {
 
 SolverSummary Summarize(const std::string& solver, const std::string& sequence,
                         const std::vector<PairResult>& results);
+
+// "all" of each solver and then, if asked for, each sequence that has a name.
+std::vector<SolverSummary> SummarizeAll(const std::vector<SolverResults>& solvers,
+                                        bool by_sequence);
 
 }  // namespace rigel
 

@@ -65,6 +65,39 @@ Json SummaryJson(const SolverSummary& s) {
   return entry;
 }
 
+Json ErrorsJson(const MotionErrors& errors) {
+  Json object = {{"rotation_deg", RadToDeg(errors.rotation)}};
+  if (errors.direction) object["translation_dir_deg"] = RadToDeg(*errors.direction);
+  if (errors.scale) object["scale"] = *errors.scale;
+  return object;
+}
+
+Json ResultJson(const PairResult& r) {
+  Json object = {{"status", EstimateStatusName(r.status)}};
+  if (r.failed) object["message"] = r.message;
+  if (r.raw) object["raw"] = ErrorsJson(*r.raw);
+  if (r.refined) object["refined"] = ErrorsJson(*r.refined);
+  if (r.bound) object["bound"] = ErrorsJson({r.bound->rotation, r.bound->direction, {}});
+  if (r.nees) object["nees"] = {{"value", *r.nees}, {"degrees_of_freedom", r.nees_dof}};
+  object["inlier_ratio"] = r.inlier_ratio;
+  object["iterations"] = r.iterations;
+  if (r.ransac_ms && r.refine_ms) {
+    object["time_ms"] = {{"ransac", *r.ransac_ms}, {"refine", *r.refine_ms}};
+  }
+  return object;
+}
+
+// All solvers' results of one pair.
+Json PairJson(const ComparisonReport& report, size_t k) {
+  const PairResult& first = report.solvers.front().pairs[k];
+  Json object = {{"pair", first.name}};
+  if (!first.sequence.empty()) object["sequence"] = first.sequence;
+  for (const SolverResults& s : report.solvers) {
+    object["solvers"][s.solver] = ResultJson(s.pairs[k]);
+  }
+  return object;
+}
+
 std::string SequenceTable(const std::vector<SolverSummary>& summaries) {
   // A blank before the first column of each group. The widths given keep it to 100 columns with the
   // longest solver name.
@@ -137,20 +170,35 @@ std::string ComparisonTable(const std::vector<SolverSummary>& summaries) {
   return text;
 }
 
-std::string ComparisonJson(const std::vector<SolverSummary>& summaries, int num_pairs,
-                           const ReportOptions& options) {
-  Json report;
-  report["format"] = "rigel-report 1";
-  report["pairs"] = num_pairs;
-  report["options"] = Json::object();
-  for (const auto& [name, value] : options) report["options"][name] = value;
-  report["results"] = Json::array();
-  for (const SolverSummary& s : summaries) report["results"].push_back(SummaryJson(s));
-  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+std::string ComparisonJson(const ComparisonReport& report,
+                           const std::vector<SolverSummary>& summaries, bool per_pair) {
+  Json json;
+  json["format"] = "rigel-report 1";
+  json["pairs"] = report.solvers.front().pairs.size();
+  if (report.shard) {
+    json["shard"] = {{"index", report.shard->index},
+                     {"count", report.shard->count},
+                     {"files", report.num_files}};
+  }
+  json["options"] = Json::object();
+  for (const auto& [name, value] : report.options) json["options"][name] = value;
+  json["results"] = Json::array();
+  for (const SolverSummary& s : summaries) json["results"].push_back(SummaryJson(s));
+  std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
+  if (per_pair) {
+    // Written line by line: there may be many, and a tree of them would be large.
+    text.resize(text.size() - 2);  // the line break and bracket of the end
+    text += ",\n  \"pair_results\": [";
+    for (size_t k = 0; k < report.solvers.front().pairs.size(); ++k) {
+      text += k == 0 ? "\n    " : ",\n    ";
+      text += PairJson(report, k).dump(-1, ' ', false, Json::error_handler_t::replace);
+    }
+    text += report.solvers.front().pairs.empty() ? "]\n}" : "\n  ]\n}";
+  }
+  return text + "\n";
 }
 
-std::string ComparisonCsv(
-    const std::vector<std::pair<std::string, std::vector<PairResult>>>& results) {
+std::string ComparisonCsv(const std::vector<SolverResults>& solvers) {
   std::string text =
       "pair,sequence,solver,status,raw_rotation_deg,raw_translation_dir_deg,raw_scale,"
       "refined_rotation_deg,refined_translation_dir_deg,refined_scale,bound_rotation_deg,"
@@ -158,7 +206,8 @@ std::string ComparisonCsv(
   const auto degrees = [](std::optional<double> radians) {
     return radians ? CsvNumber(RadToDeg(*radians)) : std::string();
   };
-  for (const auto& [solver, pairs] : results) {
+  const auto time = [](std::optional<double> ms) { return ms ? CsvNumber(*ms) : std::string(); };
+  for (const auto& [solver, pairs] : solvers) {
     for (const PairResult& r : pairs) {
       text += CsvText(r.name) + "," + CsvText(r.sequence) + "," + solver + "," +
               CsvText(EstimateStatusName(r.status));
@@ -171,7 +220,7 @@ std::string ComparisonCsv(
       text += "," + (r.bound ? degrees(r.bound->rotation) : "");
       text += "," + (r.bound ? degrees(r.bound->direction) : "");
       text += "," + CsvNumber(r.inlier_ratio) + "," + std::to_string(r.iterations) + "," +
-              CsvNumber(r.ransac_ms) + "," + CsvNumber(r.refine_ms) + "\n";
+              time(r.ransac_ms) + "," + time(r.refine_ms) + "\n";
     }
   }
   return text;

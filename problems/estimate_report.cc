@@ -47,8 +47,8 @@ void PutFinite(const char* key, double value, Json* object) {
 
 }  // namespace
 
-std::string EstimateTable(const std::vector<FramePair>& pairs,
-                          const std::vector<MotionEstimate>& estimates) {
+std::string EstimateTable(const EstimateReport& report) {
+  const std::vector<FramePair>& pairs = report.pairs;
   // The widths given keep it to 100 columns.
   Table table(1);
   table.AddHeader(
@@ -57,7 +57,7 @@ std::string EstimateTable(const std::vector<FramePair>& pairs,
   bool any_unobservable = false;
   bool any_not_asked = false;
   for (size_t k = 0; k < pairs.size(); ++k) {
-    const MotionEstimate& e = estimates[k];
+    const MotionEstimate& e = report.estimates[k];
     if (!e.HasMotion()) {
       table.AddRow({ShortName(pairs[k].name), EstimateStatusName(e.status), "-", "-", "-", "-", "-",
                     "-", "-", "-", "-", "-"});
@@ -69,7 +69,7 @@ std::string EstimateTable(const std::vector<FramePair>& pairs,
     const bool rotation = not_asked || e.refine.rotation_observable;
     const bool direction = not_asked || DirectionKnown(e);
     const bool scale =
-        not_asked ? e.raw.has_scale && HasInterCameraMatches(pairs[k]) : e.refine.scale_observable;
+        not_asked ? e.raw.has_scale && report.matches[k].any_inter : e.refine.scale_observable;
     any_not_asked = any_not_asked || not_asked;
     any_unobservable = any_unobservable || (!not_asked && (!direction || !scale));
     const Eigen::Vector3d d = e.pose.t.normalized();
@@ -102,7 +102,7 @@ std::string EstimateTable(const std::vector<FramePair>& pairs,
         "cameras.\n";
   }
   for (size_t k = 0; k < pairs.size(); ++k) {
-    const MotionEstimate& e = estimates[k];
+    const MotionEstimate& e = report.estimates[k];
     if (e.refine.IsSolutionUsable() && !e.refine.translation_observable) {
       text += ShortName(pairs[k].name) + ": " + e.refine.ObservabilityReport() + "\n";
     }
@@ -110,27 +110,29 @@ std::string EstimateTable(const std::vector<FramePair>& pairs,
   return text;
 }
 
-std::string EstimateJson(const std::vector<FramePair>& pairs,
-                         const std::vector<MotionEstimate>& estimates,
-                         const ReportOptions& options) {
-  Json report;
-  report["format"] = "rigel-estimate 1";
-  report["options"] = Json::object();
-  for (const auto& [name, value] : options) report["options"][name] = value;
-  report["pairs"] = Json::array();
+std::string EstimateJson(const EstimateReport& report, bool times) {
+  const std::vector<FramePair>& pairs = report.pairs;
+  Json json;
+  json["format"] = "rigel-estimate 1";
+  json["options"] = Json::object();
+  for (const auto& [name, value] : report.options) json["options"][name] = value;
+  // Pair by pair: a tree of many would be large.
+  std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
+  text.resize(text.size() - 2);  // the line break and bracket of the end
+  text += ",\n  \"pairs\": [";
   for (size_t k = 0; k < pairs.size(); ++k) {
-    const MotionEstimate& e = estimates[k];
+    const MotionEstimate& e = report.estimates[k];
     Json entry;
     entry["pair"] = pairs[k].name;
     if (!pairs[k].sequence.empty()) entry["sequence"] = pairs[k].sequence;
     entry["status"] = EstimateStatusName(e.status);
     if (e.status != EstimateStatus::kSuccess) entry["message"] = e.message;
     if (pairs[k].time1 && pairs[k].time2) entry["time"] = {*pairs[k].time1, *pairs[k].time2};
-    entry["matches"] = pairs[k].matches.size();
+    entry["matches"] = report.matches[k].all;
     if (e.HasMotion()) {
       entry["inliers"] = e.num_inliers;
       entry["iterations"] = e.iterations;
-      entry["time_ms"] = {{"ransac", e.ransac_ms}, {"refine", e.refine_ms}};
+      if (times) entry["time_ms"] = {{"ransac", e.ransac_ms}, {"refine", e.refine_ms}};
       entry["raw"] = MotionJson(e.raw);
       if (e.refine.IsSolutionUsable()) {
         const RefineSummary& r = e.refine;
@@ -157,13 +159,17 @@ std::string EstimateJson(const std::vector<FramePair>& pairs,
         PutFinite("relative_scale_sd", r.relative_scale_sigma, &entry);
       }
     }
-    report["pairs"].push_back(entry);
+    text += k == 0 ? "\n    " : ",\n    ";
+    for (const char c : entry.dump(2, ' ', false, Json::error_handler_t::replace)) {
+      text += c;
+      if (c == '\n') text += "    ";
+    }
   }
-  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return text + (pairs.empty() ? "]\n}\n" : "\n  ]\n}\n");
 }
 
-std::string EstimateCsv(const std::vector<FramePair>& pairs,
-                        const std::vector<MotionEstimate>& estimates) {
+std::string EstimateCsv(const EstimateReport& report, bool times) {
+  const std::vector<FramePair>& pairs = report.pairs;
   std::string text =
       "pair,status,time1,time2,qw,qx,qy,qz,tx,ty,tz,norm_t,matches,inliers,median_residual_px,"
       "rotation_sd_deg,translation_dir_sd_deg,relative_scale_sd,rotation_observable,"
@@ -179,13 +185,13 @@ std::string EstimateCsv(const std::vector<FramePair>& pairs,
   };
   for (size_t k = 0; k < pairs.size(); ++k) {
     const FramePair& pair = pairs[k];
-    const MotionEstimate& e = estimates[k];
+    const MotionEstimate& e = report.estimates[k];
     text += CsvText(pair.name) + "," + CsvText(EstimateStatusName(e.status)) + "," +
             (pair.time1 ? CsvNumber(*pair.time1) : "") + "," +
             (pair.time2 ? CsvNumber(*pair.time2) : "");
     if (!e.HasMotion()) {
       // 8 cells of the motion, then the number of matches, then 17 more.
-      text += std::string(8, ',') + "," + std::to_string(pair.matches.size()) +
+      text += std::string(8, ',') + "," + std::to_string(report.matches[k].all) +
               std::string(17, ',') + "\n";
       continue;
     }
@@ -196,12 +202,13 @@ std::string EstimateCsv(const std::vector<FramePair>& pairs,
     };
     const auto flag = [&](bool value) { return refined ? std::string(value ? "1" : "0") : ""; };
     text += motion(e.pose) + "," + CsvNumber(e.pose.t.norm()) + "," +
-            std::to_string(pair.matches.size()) + "," + std::to_string(e.num_inliers) + "," +
+            std::to_string(report.matches[k].all) + "," + std::to_string(e.num_inliers) + "," +
             known(r.median_residual_px) + "," + known(RadToDeg(r.rotation_sigma)) + "," +
             (r.translation_observable ? known(RadToDeg(r.direction_sigma)) : "") + "," +
             known(r.relative_scale_sigma) + "," + flag(r.rotation_observable) + "," +
             flag(r.translation_observable) + "," + flag(r.scale_observable) + motion(e.raw) + "," +
-            CsvNumber(e.ransac_ms) + "," + CsvNumber(e.refine_ms) + "\n";
+            (times ? CsvNumber(e.ransac_ms) : "") + "," + (times ? CsvNumber(e.refine_ms) : "") +
+            "\n";
   }
   return text;
 }

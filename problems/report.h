@@ -3,12 +3,14 @@
 #ifndef RIGEL_PROBLEMS_REPORT_H_
 #define RIGEL_PROBLEMS_REPORT_H_
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "rigel/core/frame_pair.h"
 #include "rigel/problems/comparison.h"
+#include "rigel/problems/shard.h"
 #include "rigel/refine/estimate_motion.h"
 
 namespace rigel {
@@ -16,24 +18,42 @@ namespace rigel {
 // Names and values of the options that made a report, in the order given.
 using ReportOptions = std::vector<std::pair<std::string, std::string>>;
 
+// All that a report of rigel_compare is made of.
+struct ComparisonReport {
+  ReportOptions options;
+  std::vector<SolverResults> solvers;  // at least one, all of the same pairs
+  std::optional<Shard> shard;          // of a run over a part of the files, ...
+  int num_files = 0;                   // ... which are so many in all
+};
+
 // Medians over the pairs, one row an entry; 100 columns at most. Where every pair has a bound, a
 // second table gives the efficiency, RMS error over RMS bound.
 std::string ComparisonTable(const std::vector<SolverSummary>& summaries);
-std::string ComparisonJson(const std::vector<SolverSummary>& summaries, int num_pairs,
-                           const ReportOptions& options);
+
+// With the results of each pair, one line a pair, if `per_pair` is true.
+std::string ComparisonJson(const ComparisonReport& report,
+                           const std::vector<SolverSummary>& summaries, bool per_pair);
 
 // One row a pair and solver: status, errors, bound, times.
-std::string ComparisonCsv(
-    const std::vector<std::pair<std::string, std::vector<PairResult>>>& results);
+std::string ComparisonCsv(const std::vector<SolverResults>& solvers);
 
-// One motion a row. `pairs` and `estimates` go together.
-std::string EstimateTable(const std::vector<FramePair>& pairs,
-                          const std::vector<MotionEstimate>& estimates);
-std::string EstimateJson(const std::vector<FramePair>& pairs,
-                         const std::vector<MotionEstimate>& estimates,
-                         const ReportOptions& options);
-std::string EstimateCsv(const std::vector<FramePair>& pairs,
-                        const std::vector<MotionEstimate>& estimates);
+struct MatchCount {
+  int all = 0;
+  bool any_inter = false;  // any between two cameras
+};
+
+// The motions of many pairs; its lists go together.
+struct EstimateReport {
+  ReportOptions options;
+  std::vector<FramePair> pairs;  // their rigs and matches are not looked at
+  std::vector<MatchCount> matches;
+  std::vector<MotionEstimate> estimates;
+};
+
+// One motion a row.
+std::string EstimateTable(const EstimateReport& report);
+std::string EstimateJson(const EstimateReport& report, bool times);
+std::string EstimateCsv(const EstimateReport& report, bool times);
 
 }  // namespace rigel
 

@@ -49,6 +49,11 @@ DEFINE_double(confidence, 0.9999,
 DEFINE_int32(max_iterations, 10000, "largest number of RANSAC iterations");
 DEFINE_uint64(seed, 1, "seed of all random numbers; the same seed gives the same result");
 DEFINE_int32(threads, 1, "frame pairs estimated at the same time; the results do not depend on it");
+DEFINE_string(shard, "",
+              "i/n: only the i-th of n equal parts of the files, i from 0; each pair's result is "
+              "that of the whole");
+DEFINE_bool(no_times, false,
+            "leave the times out of the results, which are then the same in every run");
 
 namespace rigel {
 namespace {
@@ -135,6 +140,10 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
     return wrong("threads", std::to_string(FLAGS_threads), "1 to 1024");
   }
   options->num_threads = FLAGS_threads;
+  Shard shard;
+  if (!FLAGS_shard.empty() && !ParseShard(FLAGS_shard, &shard)) {
+    return wrong("shard", FLAGS_shard, "i/n with i from 0 to n - 1");
+  }
   return true;
 }
 
@@ -149,30 +158,27 @@ bool CanRefine(const EstimateOptions& estimate, const std::string& solver, std::
   return false;
 }
 
-std::vector<FramePair> ReadPairs(const ComparisonOptions& options, bool* all_read,
-                                 std::vector<int>* positions) {
+InputFiles ListInput() {
+  InputFiles input;
   std::vector<std::string> errors;
-  const std::vector<std::string> paths = ListMatchFiles(FLAGS_matches, &errors);
-  *all_read = errors.empty();
+  input.paths = ListMatchFiles(FLAGS_matches, &errors);
+  input.all_there = errors.empty();
   for (const std::string& error : errors) std::cerr << error << "\n";
-  std::vector<FramePair> pairs;
-  for (size_t k = 0; k < paths.size(); ++k) {
-    FramePair pair;
-    std::string error;
-    // The number of the path: a file that cannot be read must not change the others' noise.
-    if (!ReadMatchFile(paths[k], &pair, &error) ||
-        !ApplyPriorSource(options.prior, static_cast<int>(k), &pair, &error)) {
-      std::cerr << PrintablePath(error) << "\n";
-      *all_read = false;
-      continue;
-    }
-    SelectMatches(options.use, &pair);
-    pairs.push_back(std::move(pair));
-    if (positions != nullptr) positions->push_back(static_cast<int>(k));
+  input.total = static_cast<int>(input.paths.size());
+  if (input.total == 0) std::cerr << "nothing to read in " << PrintablePath(FLAGS_matches) << "\n";
+  Shard shard;
+  if (ParseShard(FLAGS_shard, &shard)) {
+    const auto [begin, end] = shard.Range(input.total);
+    input.paths = {input.paths.begin() + begin, input.paths.begin() + end};
+    input.first = begin;
+    input.shard = shard;
   }
-  if (pairs.empty()) std::cerr << "nothing to read in " << PrintablePath(FLAGS_matches) << "\n";
-  return pairs;
+  return input;
 }
+
+std::vector<std::string> OutputFlags() { return {"csv", "json", "no_times", "shard", "threads"}; }
+
+bool TimesAreGiven() { return !FLAGS_no_times; }
 
 void ReportUnweighedPriors(const ComparisonOptions& options,
                            const std::vector<std::string>& solvers,

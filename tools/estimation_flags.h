@@ -2,11 +2,13 @@
 #ifndef RIGEL_TOOLS_ESTIMATION_FLAGS_H_
 #define RIGEL_TOOLS_ESTIMATION_FLAGS_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "rigel/core/frame_pair.h"
 #include "rigel/problems/comparison.h"
+#include "rigel/problems/shard.h"
 
 namespace rigel {
 
@@ -17,11 +19,23 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error);
 // False with a message if not.
 bool CanRefine(const EstimateOptions& estimate, const std::string& solver, std::string* error);
 
-// Reads --matches, keeps the matches that --use names and applies --prior. Every file that cannot
-// be read is told on stderr and sets *all_read to false; the others are returned, and in
-// *positions, if asked for, the places they have among all the files.
-std::vector<FramePair> ReadPairs(const ComparisonOptions& options, bool* all_read,
-                                 std::vector<int>* positions = nullptr);
+// The files of --matches that are this run's, by --shard.
+struct InputFiles {
+  std::vector<std::string> paths;
+  int first = 0;          // position of paths[0] among the files of all shards
+  int total = 0;          // files of all shards
+  bool all_there = true;  // false: something was not, which was told on stderr
+  std::optional<Shard> shard;
+};
+
+// Lists --matches. Says on stderr if there is no file at all.
+InputFiles ListInput();
+
+// The flags that say what is written where, or by how many threads: no options of a result.
+std::vector<std::string> OutputFlags();
+
+// Whether times are part of the results: not with --no_times.
+bool TimesAreGiven();
 
 // Says on stderr where --use_prior_in_refine has nothing to weigh.
 void ReportUnweighedPriors(const ComparisonOptions& options,

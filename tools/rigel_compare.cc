@@ -1,13 +1,14 @@
 // rigel_compare: accuracy of raw and refined motions against the truth of match files.
 #include <algorithm>
 #include <iostream>
-#include <map>
 #include <utility>
 
 #include <gflags/gflags.h>
 
+#include "rigel/problems/batch.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/report.h"
+#include "rigel/problems/shard_report.h"
 #include "rigel/tools/estimation_flags.h"
 #include "rigel/tools/tool.h"
 
@@ -15,6 +16,11 @@ DEFINE_string(solvers, "", "names of solvers, comma separated; all that the prio
 DEFINE_string(by, "", "sequence: one more row for each sequence of the files");
 DEFINE_string(json, "", "write the report (format rigel-report 1) to this file; - is stdout");
 DEFINE_string(csv, "", "write one line a pair and solver to this file; - is stdout");
+DEFINE_bool(per_pair, false,
+            "write the results of each pair to --json, too; with --shard they always are");
+DEFINE_string(merge, "",
+              "reports that --shard and --json wrote, comma separated: write that of the whole "
+              "instead of reading match files");
 
 namespace rigel {
 namespace {
@@ -31,9 +37,77 @@ constexpr char kUsage[] =
     "where the files state the image noise, the Cramer-Rao bound that no estimate can beat. With\n"
     "--refine=none nothing says what is observable: the direction is shown of every pair, the "
     "scale\n"
-    "of pairs with matches between cameras.\n";
+    "of pairs with matches between cameras.\n"
+    "\n"
+    "Many files, on several machines and put together again (docs/batch.md):\n"
+    "\n"
+    "  rigel_compare --matches=DIR --shard=0/2 --json=0.json      (and 1/2 to 1.json)\n"
+    "  rigel_compare --merge=0.json,1.json --json=whole.json\n";
+
+// Table, JSON and CSV.
+bool Write(ComparisonReport* report, bool by_sequence) {
+  if (!TimesAreGiven()) {
+    for (SolverResults& solver : report->solvers) {
+      for (PairResult& r : solver.pairs) {
+        r.ransac_ms.reset();
+        r.refine_ms.reset();
+      }
+    }
+  }
+  const std::vector<SolverSummary> summaries = SummarizeAll(report->solvers, by_sequence);
+  const bool has_pairs = !report->solvers.front().pairs.empty();
+  if (by_sequence && has_pairs && summaries.size() == report->solvers.size()) {
+    std::cerr << "--by=sequence: no file names a sequence\n";
+  }
+  bool ok = true;
+  // stdout belongs to the machine if it asked for it.
+  if (FLAGS_json != "-" && FLAGS_csv != "-") {
+    std::cout << ComparisonTable(summaries);
+    ok = FlushStdout();
+  }
+  const bool per_pair = FLAGS_per_pair || report->shard.has_value();
+  if (!FLAGS_json.empty()) {
+    ok = WriteOutput(FLAGS_json, ComparisonJson(*report, summaries, per_pair)) && ok;
+  }
+  if (!FLAGS_csv.empty()) ok = WriteOutput(FLAGS_csv, ComparisonCsv(report->solvers)) && ok;
+  return ok;
+}
+
+int Merge() {
+  for (const std::string& flag : GivenFlags()) {
+    const std::vector<std::string> output = {"csv", "json", "merge", "no_times", "per_pair"};
+    if (std::find(output.begin(), output.end(), flag) == output.end()) {
+      return UsageError("--merge: --" + flag + " has no effect, it is as in the reports");
+    }
+  }
+  const std::vector<std::string> names = SplitCommas(FLAGS_merge);
+  if (names.empty()) return UsageError("--merge=" + FLAGS_merge + ": names no report");
+  std::vector<ComparisonReport> shards(names.size());
+  std::string error;
+  for (size_t k = 0; k < names.size(); ++k) {
+    std::string text;
+    if (!ReadInput(names[k], &text)) return kExitFailed;
+    if (!ParseShardReport(text, names[k], &shards[k], &error)) {
+      std::cerr << error << "\n";
+      return kExitFailed;
+    }
+  }
+  ComparisonReport whole;
+  if (!MergeShards(names, &shards, &whole, &error)) {
+    std::cerr << error << "\n";
+    return kExitFailed;
+  }
+  const std::pair<std::string, std::string> by_sequence("by", "sequence");
+  const bool by =
+      std::find(whole.options.begin(), whole.options.end(), by_sequence) != whole.options.end();
+  return Write(&whole, by) ? kExitDone : kExitFailed;
+}
 
 int Run() {
+  if (FLAGS_json == "-" && FLAGS_csv == "-") {
+    return UsageError("--csv=-: stdout has the JSON already; name a file for one of them");
+  }
+  if (!FLAGS_merge.empty()) return Merge();
   ComparisonOptions options;
   std::string error;
   if (!OptionsFromFlags(&options, &error)) return UsageError(error);
@@ -51,75 +125,44 @@ int Run() {
       return UsageError("--solvers: '" + name + "' is named twice");
     }
   }
-  if (FLAGS_json == "-" && FLAGS_csv == "-") {
-    return UsageError("--csv=-: stdout has the JSON already; name a file for one of them");
-  }
   if (!FLAGS_by.empty() && FLAGS_by != "sequence") {
     return UsageError("--by=" + FLAGS_by + ": expected sequence");
   }
 
-  bool ok = true;
-  std::vector<FramePair> pairs = ReadPairs(options, &ok);
-  const auto no_truth = std::stable_partition(
-      pairs.begin(), pairs.end(), [](const FramePair& pair) { return pair.truth.has_value(); });
-  for (auto it = no_truth; it != pairs.end(); ++it) {
-    std::cerr << PrintablePath(it->name) << ": has no truth line, nothing to compare with\n";
-    ok = false;
+  const InputFiles input = ListInput();
+  if (input.total == 0) return kExitFailed;
+  FileComparison comparison;
+  {
+    Progress progress("rigel_compare", static_cast<int>(input.paths.size()));
+    comparison = CompareFiles(options, input.paths, input.first, [&] { progress.Step(); });
   }
-  pairs.erase(no_truth, pairs.end());
-  if (pairs.empty()) return kExitFailed;
-  if (options.solvers.empty()) {
-    for (const std::string& name : SolversForPairs(pairs)) {
-      if (CanRefine(options.estimate, name, &error)) options.solvers.push_back(name);
-    }
-  }
-  if (options.solvers.empty()) {
+  for (const std::string& message : comparison.errors) std::cerr << PrintablePath(message) << "\n";
+  bool ok = input.all_there && comparison.errors.empty();
+  // A shard may have nothing to report, the whole may not.
+  if (comparison.pairs.empty() && !input.shard) return kExitFailed;
+  if (comparison.solvers.empty()) {
     std::cerr << "no solver's prior is in every file; try --prior=body\n";
     return kExitFailed;
   }
-
-  ReportUnweighedPriors(options, options.solvers, pairs);
-  const bool any_sequence = std::any_of(
-      pairs.begin(), pairs.end(), [](const FramePair& pair) { return !pair.sequence.empty(); });
-  if (FLAGS_by == "sequence" && !any_sequence) {
-    std::cerr << "--by=sequence: no file names a sequence\n";
-  }
-
-  std::vector<SolverSummary> summaries;
-  std::vector<std::pair<std::string, std::vector<PairResult>>> all_results;
-  for (const std::string& name : options.solvers) {
-    EstimateOptions estimate = options.estimate;
-    estimate.solver = name;
-    Progress progress(name, static_cast<int>(pairs.size()));
-    std::vector<PairResult> results = RunSolver(
-        pairs, estimate, options.num_threads, [&] { progress.Step(); }, options.use_stated_noise);
-    summaries.push_back(Summarize(name, "all", results));
-    if (FLAGS_by == "sequence") {
-      std::map<std::string, std::vector<PairResult>> by_sequence;
-      for (const PairResult& r : results) by_sequence[r.sequence].push_back(r);
-      for (const auto& [sequence, group] : by_sequence) {
-        if (!sequence.empty()) summaries.push_back(Summarize(name, sequence, group));
-      }
-    }
-    all_results.emplace_back(name, std::move(results));
-  }
-  for (const auto& [name, results] : all_results) {
-    for (size_t k = 0; k < results.size(); ++k) {
-      if (!results[k].failed) continue;
-      std::cerr << FailureMessage(pairs[k], name, results[k].message) << "\n";
+  std::vector<std::string> solvers;
+  for (const SolverResults& results : comparison.solvers) solvers.push_back(results.solver);
+  ReportUnweighedPriors(options, solvers, comparison.pairs);
+  for (const SolverResults& results : comparison.solvers) {
+    for (size_t k = 0; k < results.pairs.size(); ++k) {
+      if (!results.pairs[k].failed) continue;
+      std::cerr << FailureMessage(comparison.pairs[k], results.solver, results.pairs[k].message)
+                << "\n";
     }
   }
 
-  // stdout belongs to the machine if it asked for it.
-  if (FLAGS_json != "-" && FLAGS_csv != "-") {
-    std::cout << ComparisonTable(summaries);
-    ok = FlushStdout() && ok;
-  }
-  const ReportOptions report_options = FlagValues({"json", "csv", "threads"});
-  ok = WriteOutput(FLAGS_json,
-                   ComparisonJson(summaries, static_cast<int>(pairs.size()), report_options)) &&
-       ok;
-  ok = WriteOutput(FLAGS_csv, ComparisonCsv(all_results)) && ok;
+  ComparisonReport report;
+  std::vector<std::string> output_flags = OutputFlags();
+  output_flags.insert(output_flags.end(), {"merge", "per_pair"});
+  report.options = FlagValues(output_flags);
+  report.solvers = std::move(comparison.solvers);
+  report.shard = input.shard;
+  report.num_files = input.total;
+  ok = Write(&report, FLAGS_by == "sequence") && ok;
   return ok ? kExitDone : kExitFailed;
 }
 

@@ -1,10 +1,13 @@
 // rigel_estimate: the motions of match files.
+#include <functional>
 #include <iostream>
+#include <utility>
 
 #include <gflags/gflags.h>
 
+#include "rigel/problems/batch.h"
 #include "rigel/problems/g2o_file.h"
-#include "rigel/problems/parallel.h"
+#include "rigel/problems/match_file.h"
 #include "rigel/problems/report.h"
 #include "rigel/tools/estimation_flags.h"
 #include "rigel/tools/tool.h"
@@ -66,39 +69,63 @@ int Run() {
     return UsageError("--g2o: without a refinement (--refine=none) a motion has no information");
   }
 
-  bool ok = true;
-  std::vector<int> positions;
-  const std::vector<FramePair> pairs = ReadPairs(options, &ok, &positions);
-  if (pairs.empty()) return kExitFailed;
-  ReportUnweighedPriors(options, {FLAGS_solver}, pairs);
-  std::vector<MotionEstimate> estimates(pairs.size());
+  const InputFiles input = ListInput();
+  if (input.total == 0) return kExitFailed;
+  bool ok = input.all_there;
+  struct Estimated {
+    MotionEstimate estimate;
+    MatchCount matches;
+  };
+  const std::function<Estimated(const FramePair&)> work = [&](const FramePair& pair) {
+    EstimateOptions pair_options = estimate;
+    if (options.use_stated_noise && pair.noise_px) pair_options.refine.noise_px = pair.noise_px;
+    Estimated result{EstimateMotion(pair_options, pair),
+                     {static_cast<int>(pair.matches.size()), HasInterCameraMatches(pair)}};
+    result.estimate.refine.inliers = std::vector<char>();
+    return result;
+  };
+  std::vector<BatchItem<Estimated>> items;
   {
-    Progress progress(FLAGS_solver, static_cast<int>(pairs.size()));
-    ParallelFor(static_cast<int>(pairs.size()), options.num_threads, [&](int k) {
-      EstimateOptions pair_options = estimate;
-      if (options.use_stated_noise && pairs[k].noise_px)
-        pair_options.refine.noise_px = pairs[k].noise_px;
-      estimates[k] = EstimateMotion(pair_options, pairs[k]);
-      progress.Step();
-    });
+    Progress progress(FLAGS_solver, static_cast<int>(input.paths.size()));
+    items = RunBatch(options, input.paths, input.first, work, [&] { progress.Step(); });
   }
-  for (size_t k = 0; k < pairs.size(); ++k) {
-    if (estimates[k].status != EstimateStatus::kSuccess) {
-      std::cerr << FailureMessage(pairs[k], FLAGS_solver, estimates[k].message) << "\n";
+  EstimateReport report;
+  std::vector<int> positions;
+  for (BatchItem<Estimated>& item : items) {
+    if (!item.error.empty()) {
+      std::cerr << PrintablePath(item.error) << "\n";
+      ok = false;
+      continue;
+    }
+    positions.push_back(item.position);
+    report.pairs.push_back(std::move(item.pair));
+    report.matches.push_back(item.result.matches);
+    report.estimates.push_back(std::move(item.result.estimate));
+  }
+  // A shard may have nothing to report, the whole may not.
+  if (report.pairs.empty() && !input.shard) return kExitFailed;
+  ReportUnweighedPriors(options, {FLAGS_solver}, report.pairs);
+  for (size_t k = 0; k < report.pairs.size(); ++k) {
+    if (report.estimates[k].status != EstimateStatus::kSuccess) {
+      std::cerr << FailureMessage(report.pairs[k], FLAGS_solver, report.estimates[k].message)
+                << "\n";
     }
   }
 
   // stdout belongs to the machine if it asked for it.
   if (FLAGS_json != "-" && FLAGS_csv != "-" && FLAGS_g2o != "-") {
-    std::cout << EstimateTable(pairs, estimates);
+    std::cout << EstimateTable(report);
     ok = FlushStdout() && ok;
   }
-  const ReportOptions report_options = FlagValues({"json", "csv", "g2o", "threads"});
-  ok = WriteOutput(FLAGS_json, EstimateJson(pairs, estimates, report_options)) && ok;
-  ok = WriteOutput(FLAGS_csv, EstimateCsv(pairs, estimates)) && ok;
+  std::vector<std::string> output_flags = OutputFlags();
+  output_flags.push_back("g2o");
+  report.options = FlagValues(output_flags);
+  const bool times = TimesAreGiven();
+  if (!FLAGS_json.empty()) ok = WriteOutput(FLAGS_json, EstimateJson(report, times)) && ok;
+  if (!FLAGS_csv.empty()) ok = WriteOutput(FLAGS_csv, EstimateCsv(report, times)) && ok;
   if (!FLAGS_g2o.empty()) {
     std::vector<std::string> notes;
-    const std::string graph = FormatG2o(pairs, estimates, positions, &notes);
+    const std::string graph = FormatG2o(report.pairs, report.estimates, positions, &notes);
     for (const std::string& note : notes) std::cerr << "--g2o: " << note << "\n";
     ok = WriteOutput(FLAGS_g2o, graph) && ok;
   }

@@ -1,5 +1,6 @@
 // rigel_simulate: match files of the synthetic scene.
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
@@ -10,7 +11,9 @@
 
 #include <gflags/gflags.h>
 
+#include "rigel/problems/kitti_poses.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/problems/parallel.h"
 #include "rigel/problems/synthetic.h"
 #include "rigel/tools/tool.h"
 
@@ -29,6 +32,11 @@ DEFINE_string(motion, "forward",
 DEFINE_double(inter_share, 0, "share of the matches between different cameras");
 DEFINE_double(outlier_share, 0, "share of the matches whose second point is anywhere in the image");
 DEFINE_uint64(seed, 1, "the same seed makes the same files");
+DEFINE_string(poses, "",
+              "directory of KITTI odometry poses (00.txt, ...): one pair for each two consecutive "
+              "frames, moved as they were; instead of --pairs, --motion and --rotation_*");
+DEFINE_int32(every, 1, "of the frames of --poses take each n-th");
+DEFINE_int32(threads, 1, "files made at the same time; they do not depend on it");
 
 namespace rigel {
 namespace {
@@ -42,7 +50,12 @@ constexpr char kUsage[] =
     "N(0, 0.05 m) and turned by N(0, 0.1 rad) per axis, a third and a fourth above and below "
     "them;\n"
     "points uniform in the image of view 1, 5 to 30 m away. The files hold the truth, the noise\n"
-    "and the exact gravity, axis and (planar motion) normal.\n";
+    "and the exact gravity, axis and (planar motion) normal.\n"
+    "\n"
+    "  rigel_simulate --output=DIR --poses=KITTI/poses --num_matches=300\n"
+    "\n"
+    "The same rig and points, moved as a car was: the body is its left camera, the sequence the\n"
+    "name of the file, gravity the vertical of the sequence's first frame.\n";
 
 std::string FileName(int k) {
   char name[32];
@@ -50,14 +63,15 @@ std::string FileName(int k) {
   return name;
 }
 
-bool IsOwn(const std::string& name) {
+bool IsOwn(const std::string& name, int num_pairs) {
   int k = -1;
   std::from_chars(name.data(), name.data() + name.size(), k);
-  return k >= 0 && k < FLAGS_pairs && name == FileName(k);
+  return k >= 0 && k < num_pairs && name == FileName(k);
 }
 
 // Match files that are in `directory` and would be read with those of this run. In byte order.
-std::vector<std::string> OtherMatchFiles(const std::string& directory, std::error_code* code) {
+std::vector<std::string> OtherMatchFiles(const std::string& directory, int num_pairs,
+                                         std::error_code* code) {
   namespace fs = std::filesystem;
   std::vector<std::string> others;
   fs::directory_iterator entry(directory, *code);
@@ -66,13 +80,41 @@ std::vector<std::string> OtherMatchFiles(const std::string& directory, std::erro
     const std::string ending = ".matches";
     std::error_code ignored;
     if (name.size() > ending.size() &&
-        name.compare(name.size() - ending.size(), ending.size(), ending) == 0 && !IsOwn(name) &&
-        !entry->is_directory(ignored)) {
+        name.compare(name.size() - ending.size(), ending.size(), ending) == 0 &&
+        !IsOwn(name, num_pairs) && !entry->is_directory(ignored)) {
       others.push_back(name);
     }
   }
   std::sort(others.begin(), others.end());
   return others;
+}
+
+// Makes and writes all files. The message of the first that failed, in their order; empty if none
+// did. After a failure no more are begun.
+std::string WriteFiles(const SceneOptions& options, const std::vector<DrivenMotion>& motions,
+                       int num_pairs) {
+  Progress progress("rigel_simulate", num_pairs);
+  std::vector<std::string> errors(num_pairs);
+  std::atomic<int> failed{num_pairs};  // the first
+  ParallelFor(num_pairs, FLAGS_threads, [&](int k) {
+    if (k > failed) return;
+    const std::string path = (std::filesystem::path(FLAGS_output) / FileName(k)).string();
+    FramePair pair;
+    std::string error;
+    const bool made = motions.empty() ? MakeScenePair(options, k, &pair, &error)
+                                      : MakeDrivenPair(options, k, motions[k], &pair, &error);
+    if (!made) {
+      errors[k] = PrintablePath(path) + ": " + error;
+    } else if (!WriteMatchFile(path, pair, &error)) {
+      errors[k] = error;
+    }
+    if (!errors[k].empty()) {
+      for (int first = failed; k < first && !failed.compare_exchange_weak(first, k);) {
+      }
+    }
+    progress.Step();
+  });
+  return failed < num_pairs ? errors[failed] : "";
 }
 
 int Run() {
@@ -95,6 +137,27 @@ int Run() {
   options.outlier_share = FLAGS_outlier_share;
   options.seed = FLAGS_seed;
   if (!options.IsValid(&error)) return UsageError("--" + error);
+  if (FLAGS_every < 1) return UsageError("--every: expected at least 1");
+  if (FLAGS_threads < 1 || FLAGS_threads > 1024) return UsageError("--threads: expected 1 to 1024");
+  const std::vector<std::string> given = GivenFlags();
+  const auto is_given = [&](const std::string& flag) {
+    return std::find(given.begin(), given.end(), flag) != given.end();
+  };
+  for (const char* flag : {"pairs", "motion", "rotation_deg", "rotation_axis"}) {
+    if (!FLAGS_poses.empty() && is_given(flag)) {
+      return UsageError("--" + std::string(flag) + ": the motions are those of --poses");
+    }
+  }
+  if (FLAGS_poses.empty() && is_given("every")) {
+    return UsageError("--every: there are no frames without --poses");
+  }
+
+  std::vector<DrivenMotion> motions;
+  if (!FLAGS_poses.empty() && !ReadDrivenMotions(FLAGS_poses, FLAGS_every, &motions, &error)) {
+    std::cerr << error << "\n";
+    return kExitFailed;
+  }
+  const int num_pairs = motions.empty() ? FLAGS_pairs : static_cast<int>(motions.size());
 
   std::error_code code;
   std::filesystem::create_directories(FLAGS_output, code);
@@ -102,7 +165,7 @@ int Run() {
     std::cerr << PrintablePath(FLAGS_output) << ": cannot be made: " << code.message() << "\n";
     return kExitFailed;
   }
-  const std::vector<std::string> others = OtherMatchFiles(FLAGS_output, &code);
+  const std::vector<std::string> others = OtherMatchFiles(FLAGS_output, num_pairs, &code);
   if (code) {
     std::cerr << PrintablePath(FLAGS_output) << ": cannot be listed: " << code.message() << "\n";
     return kExitFailed;
@@ -115,21 +178,12 @@ int Run() {
            "empty the directory or name another\n";
     return kExitFailed;
   }
-  Progress progress("rigel_simulate", FLAGS_pairs);
-  for (int k = 0; k < FLAGS_pairs; ++k) {
-    const std::string path = (std::filesystem::path(FLAGS_output) / FileName(k)).string();
-    FramePair pair;
-    if (!MakeScenePair(options, k, &pair, &error)) {
-      std::cerr << PrintablePath(path) << ": " << error << "\n";
-      return kExitFailed;
-    }
-    if (!WriteMatchFile(path, pair, &error)) {
-      std::cerr << error << "\n";
-      return kExitFailed;
-    }
-    progress.Step();
+  error = WriteFiles(options, motions, num_pairs);
+  if (!error.empty()) {
+    std::cerr << error << "\n";
+    return kExitFailed;
   }
-  std::cerr << "wrote " << FLAGS_pairs << " match files to " << PrintablePath(FLAGS_output) << "\n";
+  std::cerr << "wrote " << num_pairs << " match files to " << PrintablePath(FLAGS_output) << "\n";
   return kExitDone;
 }
 

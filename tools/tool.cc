@@ -128,6 +128,14 @@ std::vector<std::pair<std::string, std::string>> FlagValues(
   return values;
 }
 
+std::vector<std::string> GivenFlags() {
+  std::vector<std::string> names;
+  for (const auto& flag : OwnFlags()) {
+    if (!flag.is_default) names.push_back(flag.name);
+  }
+  return names;
+}
+
 bool FlushStdout() {
   if (std::cout.flush()) return true;
   std::cerr << ProgramName() << ": stdout: cannot be written\n";
@@ -149,6 +157,21 @@ bool WriteOutput(const std::string& path, const std::string& text) {
   // The disk may turn out to be full only here.
   ok = std::fclose(file) == 0 && ok;
   if (!ok) std::cerr << path << ": cannot be written: " << std::strerror(errno) << "\n";
+  return ok;
+}
+
+bool ReadInput(const std::string& path, std::string* text) {
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  if (file == nullptr) {
+    std::cerr << path << ": cannot be opened: " << std::strerror(errno) << "\n";
+    return false;
+  }
+  text->clear();
+  char buffer[1 << 16];
+  for (size_t n; (n = std::fread(buffer, 1, sizeof(buffer), file)) > 0;) text->append(buffer, n);
+  const bool ok = std::ferror(file) == 0;
+  if (!ok) std::cerr << path << ": cannot be read: " << std::strerror(errno) << "\n";
+  std::fclose(file);
   return ok;
 }
 

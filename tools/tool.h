@@ -28,6 +28,9 @@ int UsageError(const std::string& message);
 std::vector<std::pair<std::string, std::string>> FlagValues(
     const std::vector<std::string>& without);
 
+// The names of the program's own flags that were given, in alphabetical order.
+std::vector<std::string> GivenFlags();
+
 // Sends what was written to std::cout on its way. False with a message on stderr if stdout is
 // closed or full.
 bool FlushStdout();
@@ -35,6 +38,9 @@ bool FlushStdout();
 // Writes to a file, or to stdout if `path` is "-"; nothing if it is empty. False with a message on
 // stderr if that fails.
 bool WriteOutput(const std::string& path, const std::string& text);
+
+// Reads a whole file. False with a message on stderr if that fails.
+bool ReadInput(const std::string& path, std::string* text);
 
 // Splits at commas; empty parts are dropped.
 std::vector<std::string> SplitCommas(const std::string& text);

@@ -1,7 +1,9 @@
-// Google Benchmark of the hot kernels: each minimal solver, scoring, residuals, local optimization.
+// Google Benchmark of the hot kernels: each minimal solver, scoring, residuals, local optimization;
+// and of the reader of match files.
 //
 //   build/release/bin/kernels_benchmark --benchmark_repetitions=9
 //   --benchmark_report_aggregates_only
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,7 @@
 
 #include "rigel/minimal/catalogue.h"
 #include "rigel/minimal/grouped_matches.h"
+#include "rigel/problems/match_file.h"
 #include "rigel/problems/synthetic.h"
 #include "rigel/refine/epipolar_residuals.h"
 #include "rigel/refine/refine.h"
@@ -233,6 +236,43 @@ void BM_Refine(benchmark::State& state) {
   }
 }
 BENCHMARK(BM_Refine)->Unit(benchmark::kMicrosecond);
+
+// items_per_second: matches.
+void BM_ParseMatches(benchmark::State& state) {
+  const FramePair pair =
+      ScenePair(static_cast<int>(state.range(0)), 0.5, 0.5, MotionPattern::kRandom);
+  const std::string text = FormatMatches(pair);
+  FramePair read;
+  std::string error;
+  for (auto _ : state) {
+    if (!ParseMatches(text, "text", &read, &error)) std::abort();
+    benchmark::DoNotOptimize(read.matches.data());
+  }
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+  state.SetBytesProcessed(state.iterations() * static_cast<int64_t>(text.size()));
+}
+BENCHMARK(BM_ParseMatches)->Arg(300)->Arg(2500)->Unit(benchmark::kMicrosecond);
+
+// The same with the file, which is in the page cache.
+void BM_ReadMatchFile(benchmark::State& state) {
+  const FramePair pair =
+      ScenePair(static_cast<int>(state.range(0)), 0.5, 0.5, MotionPattern::kRandom);
+  const std::string path =
+      (std::filesystem::temp_directory_path() / "rigel_kernels_benchmark.matches").string();
+  FramePair read;
+  std::string error;
+  if (!WriteMatchFile(path, pair, &error)) {
+    state.SkipWithError(error.c_str());
+    return;
+  }
+  for (auto _ : state) {
+    if (!ReadMatchFile(path, &read, &error)) std::abort();
+    benchmark::DoNotOptimize(read.matches.data());
+  }
+  std::filesystem::remove(path);
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(BM_ReadMatchFile)->Arg(300)->Arg(2500)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace rigel

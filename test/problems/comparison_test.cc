@@ -56,24 +56,6 @@ TEST(Comparison, SelectMatchesKeepsAKindInItsOrder) {
   EXPECT_FALSE(ParseMatchUse("both", &use));
 }
 
-TEST(Comparison, SolversForPairsAreThoseWhosePriorEveryPairHas) {
-  const FramePair pair = ScenePair(SceneOptions(), 1);  // gravity and axis, no normal
-  FramePair axis_only = pair;
-  axis_only.prior.gravity2.reset();
-  const auto count = [](const std::vector<std::string>& names, PriorKind kind) {
-    int n = 0;
-    for (const std::string& name : names) n += FindSolver(name)->prior == kind;
-    return n;
-  };
-  const std::vector<std::string> both = SolversForPairs({pair, pair});
-  EXPECT_GE(count(both, PriorKind::kVertical), 3);
-  EXPECT_GE(count(both, PriorKind::kAxis), 3);
-  EXPECT_EQ(count(both, PriorKind::kPlanar), 0);
-  const std::vector<std::string> fewer = SolversForPairs({pair, axis_only});
-  EXPECT_EQ(count(fewer, PriorKind::kVertical), 0);
-  EXPECT_EQ(count(fewer, PriorKind::kAxis), count(both, PriorKind::kAxis));
-}
-
 TEST(Comparison, SummaryOfNothing) {
   const SolverSummary s = Summarize("4pt", "all", {});
   EXPECT_EQ(s.pairs, 0);
@@ -110,7 +92,7 @@ TEST(Comparison, WhatMostPairsLackIsLeftOut) {
   for (int k = 0; k < 3; ++k) results[k].raw->direction = results[k].refined->direction = 0.01 * k;
   for (int k = 0; k < 2; ++k) results[k].raw->scale = results[k].refined->scale = 0.1;
   for (PairResult& r : results) {
-    r.bound = CramerRaoBound();
+    r.bound = MotionBound();
     r.bound->rotation = DegToRad(0.02);
     r.bound->direction = DegToRad(0.3);
   }
@@ -122,6 +104,13 @@ TEST(Comparison, WhatMostPairsLackIsLeftOut) {
   ASSERT_TRUE(s.bound_rotation_deg && s.bound_direction_deg);
   EXPECT_NEAR(s.bound_rotation_deg->rms, 0.02, 1e-12);
   EXPECT_NEAR(s.bound_direction_deg->rms, 0.3, 1e-12);
+
+  // The bound of the direction is over the pairs whose errors it is held against.
+  results[3].bound->direction = DegToRad(90.0);
+  EXPECT_NEAR(Summarize("4pt", "all", results).bound_direction_deg->rms, 0.3, 1e-12);
+  results[1].bound->direction.reset();
+  results[0].bound->direction.reset();
+  EXPECT_FALSE(Summarize("4pt", "all", results).bound_direction_deg.has_value());
 
   results[2].raw->scale = results[2].refined->scale = 0.3;
   results[3].bound.reset();
@@ -266,6 +255,8 @@ TEST(Comparison, AStillTruthHasNoDirectionError) {
   const std::vector<PairResult> results = RunSolver(pairs, EstimateOptions(), 1, {});
   ASSERT_TRUE(results[0].refined.has_value()) << results[0].message;
   EXPECT_FALSE(results[0].refined->direction || results[0].refined->scale);
+  ASSERT_TRUE(results[0].bound.has_value());
+  EXPECT_FALSE(results[0].bound->direction.has_value());
   EXPECT_LT(RadToDeg(results[0].refined->rotation), 0.1);
 }
 

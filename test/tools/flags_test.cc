@@ -20,6 +20,7 @@ const Args kEstimationFlags = {"confidence",
                                "loss",
                                "matches",
                                "max_iterations",
+                               "no_times",
                                "prior",
                                "prior_noise_axis",
                                "prior_noise_deg",
@@ -27,20 +28,22 @@ const Args kEstimationFlags = {"confidence",
                                "refine",
                                "residual",
                                "seed",
+                               "shard",
                                "threads",
                                "threshold_px",
                                "use",
                                "use_prior_in_refine"};
 
 std::map<std::string, Args> FlagsOfTools() {
-  return {{"benchmark",
-           {"json", "num_cameras", "random_axis", "refine", "rotation_deg", "seed", "solvers",
-            "trials"}},
-          {"compare", kEstimationFlags + Args{"by", "csv", "json", "solvers"}},
-          {"estimate", kEstimationFlags + Args{"csv", "g2o", "json", "solver"}},
-          {"simulate",
-           {"inter_share", "motion", "noise_px", "num_cameras", "num_matches", "outlier_share",
-            "output", "pairs", "rotation_axis", "rotation_deg", "seed"}}};
+  return {
+      {"benchmark",
+       {"json", "num_cameras", "random_axis", "refine", "rotation_deg", "seed", "solvers",
+        "trials"}},
+      {"compare", kEstimationFlags + Args{"by", "csv", "json", "merge", "per_pair", "solvers"}},
+      {"estimate", kEstimationFlags + Args{"csv", "g2o", "json", "solver"}},
+      {"simulate",
+       {"every", "inter_share", "motion", "noise_px", "num_cameras", "num_matches", "outlier_share",
+        "output", "pairs", "poses", "rotation_axis", "rotation_deg", "seed", "threads"}}};
 }
 
 // A run that would succeed but for what is added to it and that the files are not there, nor can be
@@ -142,6 +145,11 @@ TEST(Flags, ValueOutOfRangeIsAUsageErrorBeforeAnyFileIsRead) {
         {"--threads=0", "1 to 1024"},
         {"--threads=2000", "1 to 1024"},
         {"--seed=-1", "seed"},
+        {"--shard=4/4", "--shard=4/4: expected i/n with i from 0 to n - 1"},
+        {"--shard=-1/2", "--shard=-1/2: expected"},
+        {"--shard=a/b", "--shard=a/b: expected"},
+        {"--shard=1/0", "--shard=1/0: expected"},
+        {"--shard=1", "--shard=1: expected"},
     };
     for (const auto& [flag, what] : wrong) ExpectUsageError(tool, {flag}, what);
     // What another flag leaves without effect.
@@ -177,6 +185,36 @@ TEST(Flags, ExactPriorOfASolverWithoutOneIsAUsageErrorInTermsOfTheFlags) {
 
 TEST(Flags, PoseGraphWithoutARefinementIsAUsageError) {
   ExpectUsageError("estimate", {"--refine=none", "--g2o=-"}, "--g2o: without a refinement");
+}
+
+TEST(Flags, MergingTakesNoFlagsOfAnEstimateAndNoEmptyList) {
+  const auto expect = [](const Args& args, const std::string& what) {
+    const Outcome run = RunTool("compare", args);
+    EXPECT_EXIT_CODE(run, 2);
+    EXPECT_THAT(run.err, AllOf(HasSubstr(what), Not(HasSubstr("/nonexistent"))));
+  };
+  const std::string merge = "--merge=/proc/nonexistent/of/rigel";
+  for (const char* flag : {"--matches=x", "--solvers=4pt", "--by=sequence", "--seed=1",
+                           "--shard=0/2", "--threads=1"}) {
+    const std::string name = std::string(flag).substr(0, std::string(flag).find('='));
+    expect({merge, flag}, "--merge: " + name + " has no effect");
+  }
+  expect({"--merge=,"}, "--merge=,: names no report");
+  expect({merge, "--json=-", "--csv=-"}, "--csv=-");
+}
+
+TEST(Flags, PosesHaveTheirOwnMotionsAndFramesNeedPoses) {
+  const Args poses = {"--poses=/proc/nonexistent/of/rigel"};
+  for (const char* flag :
+       {"--pairs=50", "--motion=forward", "--rotation_deg=1", "--rotation_axis=y"}) {
+    const Outcome run = RunTool("simulate", Args{"--output=/proc/x", flag} + poses);
+    EXPECT_EXIT_CODE(run, 2);
+    EXPECT_THAT(run.err, AllOf(HasSubstr("the motions are those of --poses"),
+                               Not(HasSubstr("/nonexistent"))));
+  }
+  ExpectUsageError("simulate", {"--every=2"}, "--every: there are no frames without --poses");
+  ExpectUsageError("simulate", {"--every=0"}, "--every: expected at least 1");
+  ExpectUsageError("simulate", {"--threads=0"}, "--threads: expected 1 to 1024");
 }
 
 TEST(Flags, UnwritableOutputFileFails) {

@@ -78,6 +78,22 @@ TEST_F(RealDataTest, DrivingIsAsAccurateAsTheBestPublicEstimator) {
   EXPECT_LE(entry["refined"]["scale"]["median"], 0.0030 * 1.1);
 }
 
+TEST_F(RealDataTest, ReportIsTheSameForAnyNumberOfThreads) {
+  for (const char* tool : {"compare", "estimate"}) {
+    std::string first;
+    for (const char* threads : {"--threads=1", "--threads=2", "--threads=8"}) {
+      Args args = {"--matches=" + folder_ + "/kitti_stereo_06", "--prior=body", "--no_times",
+                   "--json=-", threads};
+      if (tool == std::string("compare"))
+        args = args + Args{"--solvers=4pt-axis,3pt", "--per_pair"};
+      const Outcome run = RunTool(tool, args);
+      EXPECT_EXIT_CODE(run, 0);
+      if (first.empty()) first = run.out;
+      EXPECT_EQ(run.out, first) << run.command;
+    }
+  }
+}
+
 TEST_F(RealDataTest, PoseGraphOfADriveEndsNearTheTruth) {
   const Outcome run =
       RunTool("estimate", {"--matches=" + folder_ + "/kitti_stereo_06", "--prior=body", "--g2o=-"});

@@ -1,0 +1,144 @@
+#include "rigel/problems/kitti_poses.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+
+#include "rigel/problems/match_file.h"
+
+namespace rigel {
+namespace {
+
+constexpr double kMaxRotationError = 1e-3;  // of any element of R'R - I
+
+// False with what is wrong.
+bool ParsePose(std::string_view line, Pose* pose, std::string* error) {
+  constexpr int kNumbers = 12;
+  constexpr std::string_view kBlanks = " \t\r";
+  double m[kNumbers];
+  int count = 0;
+  for (size_t begin = line.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
+    const size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
+    if (count < kNumbers) {
+      // from_chars takes no plus sign.
+      const char* first = line.data() + begin + (line[begin] == '+' ? 1 : 0);
+      const auto [stop, status] = std::from_chars(first, line.data() + end, m[count]);
+      if (status != std::errc() || stop != line.data() + end || !std::isfinite(m[count])) {
+        *error = "number " + std::to_string(count + 1) + " is not a finite number";
+        return false;
+      }
+    }
+    ++count;
+    begin = line.find_first_not_of(kBlanks, end);
+  }
+  if (count != kNumbers) {
+    *error = std::to_string(count) + " numbers, expected 12: the rows of a 3x4 matrix";
+    return false;
+  }
+  Eigen::Matrix3d R;
+  R << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
+  const Eigen::Matrix3d off = R.transpose() * R - Eigen::Matrix3d::Identity();
+  if (!(off.cwiseAbs().maxCoeff() <= kMaxRotationError) || !(R.determinant() > 0)) {
+    *error = "the first three columns are not a rotation";
+    return false;
+  }
+  *pose = Pose::FromQuaternion(Eigen::Quaterniond(R), {m[3], m[7], m[11]});
+  return true;
+}
+
+bool ListPoseFiles(const std::string& directory, std::vector<std::filesystem::path>* files,
+                   std::string* error) {
+  namespace fs = std::filesystem;
+  std::error_code code;
+  fs::directory_iterator entry(directory, code);
+  for (; !code && entry != fs::directory_iterator(); entry.increment(code)) {
+    std::error_code ignored;
+    if (entry->path().extension() == ".txt" && !entry->is_directory(ignored)) {
+      files->push_back(entry->path());
+    }
+  }
+  if (code) {
+    *error = PrintablePath(directory) + ": cannot be listed: " + code.message();
+    return false;
+  }
+  if (files->empty()) {
+    *error = PrintablePath(directory) + ": no pose files (00.txt, ...) in this directory";
+    return false;
+  }
+  std::sort(files->begin(), files->end(),
+            [](const fs::path& a, const fs::path& b) { return a.native() < b.native(); });
+  return true;
+}
+
+}  // namespace
+
+bool ReadKittiPoses(const std::string& path, std::vector<Pose>* world_from_camera,
+                    std::string* error) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    *error = PrintablePath(path) + ": cannot be opened: " + std::generic_category().message(errno);
+    return false;
+  }
+  std::vector<Pose> poses;
+  int number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++number;
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    Pose pose;
+    std::string what;
+    if (!ParsePose(line, &pose, &what)) {
+      *error = PrintablePath(path) + ":" + std::to_string(number) + ": " + what;
+      return false;
+    }
+    poses.push_back(pose);
+  }
+  if (file.bad()) {
+    *error = PrintablePath(path) + ": cannot be read";
+    return false;
+  }
+  if (poses.empty()) {
+    *error = PrintablePath(path) + ": there is no pose in it";
+    return false;
+  }
+  *world_from_camera = std::move(poses);
+  return true;
+}
+
+bool ReadDrivenMotions(const std::string& directory, int every, std::vector<DrivenMotion>* motions,
+                       std::string* error) {
+  std::vector<std::filesystem::path> files;
+  if (!ListPoseFiles(directory, &files, error)) return false;
+  std::vector<DrivenMotion> result;
+  for (const std::filesystem::path& file : files) {
+    std::vector<Pose> poses;
+    if (!ReadKittiPoses(file.string(), &poses, error)) return false;
+    const auto step = static_cast<size_t>(every);
+    for (size_t k = step; k < poses.size(); k += step) {
+      result.push_back({file.stem().string(), poses[k - step], poses[k]});
+    }
+  }
+  if (result.empty()) {
+    *error = PrintablePath(directory) + ": no motion: no file has two poses that are " +
+             std::to_string(every) + (every == 1 ? " frame" : " frames") + " apart";
+    return false;
+  }
+  *motions = std::move(result);
+  return true;
+}
+
+bool MakeDrivenPair(const SceneOptions& options, int index, const DrivenMotion& motion,
+                    FramePair* pair, std::string* error) {
+  if (!MakeScenePair(options, index, motion.body2_from_body1(), pair, error)) return false;
+  pair->sequence = motion.sequence;
+  const Eigen::Vector3d down = Eigen::Vector3d::UnitY();
+  pair->prior.gravity1 = motion.world_from_body1.R.transpose() * down;
+  pair->prior.gravity2 = motion.world_from_body2.R.transpose() * down;
+  return true;
+}
+
+}  // namespace rigel
