@@ -58,12 +58,12 @@ TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
   EXPECT_EQ(report["options"]["confidence"], "0.9999");
   ASSERT_EQ(report["pairs"].size(), 3u);
   for (const Json& pair : report["pairs"]) {
-    EXPECT_THAT(
-        Keys(pair),
-        UnorderedElementsAre("pair", "status", "matches", "inliers", "iterations", "time_ms", "raw",
-                             "refined", "median_residual_px", "noise_px", "rotation_observable",
-                             "translation_observable", "scale_observable", "rotation_sd_deg",
-                             "translation_dir_sd_deg", "covariance", "relative_scale_sd"));
+    EXPECT_THAT(Keys(pair), UnorderedElementsAre(
+                                "pair", "status", "matches", "inliers", "iterations", "time_ms",
+                                "raw", "refined", "median_residual_px", "noise_px",
+                                "rotation_observable", "translation_observable", "scale_observable",
+                                "rotation_sd_deg", "translation_dir_sd_deg", "covariance",
+                                "relative_scale_sd", "weakest_direction"));
     EXPECT_EQ(pair["status"], "ok");
     EXPECT_EQ(pair["matches"], 200);
     EXPECT_GE(pair["inliers"], 150);
