@@ -54,25 +54,30 @@ RIGEL_KERNEL_BODY void Errors(const PixelArrays& block, const double F[9], doubl
   }
 }
 
-// Sets e to t2 where the match at begin + i lies behind a camera: the test of cheirality.cc, and
-// its names.
+// Signs of the depths of match k, and its parallax: the test of cheirality.cc, and its names.
+RIGEL_KERNEL_BODY void DepthSigns(const RayArrays& rays, int k, const GroupMotion& m, double* n1,
+                                  double* n2, double* sin2) {
+  const double x = rays.x1[k], y = rays.y1[k], z = rays.z1[k];
+  const double fx = rays.x2[k], fy = rays.y2[k], fz = rays.z2[k];
+  const double gx = m.R[0] * x + m.R[1] * y + m.R[2] * z;
+  const double gy = m.R[3] * x + m.R[4] * y + m.R[5] * z;
+  const double gz = m.R[6] * x + m.R[7] * y + m.R[8] * z;
+  const double nx = gy * fz - gz * fy;
+  const double ny = gz * fx - gx * fz;
+  const double nz = gx * fy - gy * fx;
+  *sin2 = nx * nx + ny * ny + nz * nz;
+  *n1 = (fy * m.b[2] - fz * m.b[1]) * nx + (fz * m.b[0] - fx * m.b[2]) * ny +
+        (fx * m.b[1] - fy * m.b[0]) * nz;
+  *n2 = (gy * m.b[2] - gz * m.b[1]) * nx + (gz * m.b[0] - gx * m.b[2]) * ny +
+        (gx * m.b[1] - gy * m.b[0]) * nz;
+}
+
+// Sets e to t2 where the match at begin + i lies behind a camera.
 RIGEL_KERNEL_BODY void RejectBehind(const RayArrays& rays, int begin, int size,
                                     const GroupMotion& m, double t2, double e[kBlock]) {
   for (int i = 0; i < Rounded(size); ++i) {
-    const int k = begin + i;
-    const double x = rays.x1[k], y = rays.y1[k], z = rays.z1[k];
-    const double fx = rays.x2[k], fy = rays.y2[k], fz = rays.z2[k];
-    const double gx = m.R[0] * x + m.R[1] * y + m.R[2] * z;
-    const double gy = m.R[3] * x + m.R[4] * y + m.R[5] * z;
-    const double gz = m.R[6] * x + m.R[7] * y + m.R[8] * z;
-    const double nx = gy * fz - gz * fy;
-    const double ny = gz * fx - gx * fz;
-    const double nz = gx * fy - gy * fx;
-    const double sin2 = nx * nx + ny * ny + nz * nz;
-    const double n1 = (fy * m.b[2] - fz * m.b[1]) * nx + (fz * m.b[0] - fx * m.b[2]) * ny +
-                      (fx * m.b[1] - fy * m.b[0]) * nz;
-    const double n2 = (gy * m.b[2] - gz * m.b[1]) * nx + (gz * m.b[0] - gx * m.b[2]) * ny +
-                      (gx * m.b[1] - gy * m.b[0]) * nz;
+    double n1, n2, sin2;
+    DepthSigns(rays, begin + i, m, &n1, &n2, &sin2);
     const double error = e[i];
     double kept = n1 > 0 ? error : t2;
     kept = n2 > 0 ? kept : t2;
@@ -136,7 +141,37 @@ RIGEL_KERNEL_BODY int Select(const PixelArrays& pixels, const RayArrays& rays, c
   return total;
 }
 
+RIGEL_KERNEL_BODY void Count(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
+                             const GroupMotion& motion, double t2, DepthCounts* counts) {
+  int in_front = 0, behind = 0, decided = 0;
+  for (int begin = 0; begin < pixels.size; begin += kBlock) {
+    const PixelArrays block = BlockAt(pixels, begin);
+    double e[kBlock], sign1[kBlock], sign2[kBlock];
+    Errors(block, F, e);
+    for (int i = 0; i < Rounded(block.size); ++i) {
+      double sin2;
+      DepthSigns(rays, begin + i, motion, &sign1[i], &sign2[i], &sin2);
+      e[i] = sin2 > motion.min_sin2 ? e[i] : t2;
+    }
+    for (int i = 0; i < block.size; ++i) {
+      const int one = e[i] < t2 ? 1 : 0;
+      decided += one;
+      in_front += sign1[i] > 0 && sign2[i] > 0 ? one : 0;
+      behind += sign1[i] < 0 && sign2[i] < 0 ? one : 0;
+    }
+  }
+  counts->in_front += in_front;
+  counts->behind += behind;
+  counts->decided += decided;
+}
+
 #if RIGEL_HAS_AVX2_PATH
+RIGEL_TARGET_AVX2 void CountAvx2(const PixelArrays& pixels, const RayArrays& rays,
+                                 const double F[9], const GroupMotion& motion, double t2,
+                                 DepthCounts* counts) {
+  Count(pixels, rays, F, motion, t2, counts);
+}
+
 RIGEL_TARGET_AVX2 double SumAvx2(const PixelArrays& pixels, const double F[9], double t2,
                                  double bound, double sum, int* num_inliers) {
   return Sum(pixels, nullptr, F, nullptr, t2, bound, sum, num_inliers);
@@ -199,6 +234,15 @@ int SelectInFront(const PixelArrays& pixels, const RayArrays& rays, const double
   }
 #endif
   return Select(pixels, rays, F, motion, t2, squared_errors, inliers);
+}
+
+void CountDepths(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
+                 const GroupMotion& motion, double t2, DepthCounts* counts,
+                 [[maybe_unused]] CpuPath path) {
+#if RIGEL_HAS_AVX2_PATH
+  if (path == CpuPath::kAvx2) return CountAvx2(pixels, rays, F, motion, t2, counts);
+#endif
+  Count(pixels, rays, F, motion, t2, counts);
 }
 
 }  // namespace rigel

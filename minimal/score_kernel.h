@@ -65,6 +65,18 @@ int SelectInFront(const PixelArrays& pixels, const RayArrays& rays, const double
                   const GroupMotion& motion, double t2, double* squared_errors, char* inliers,
                   CpuPath path = BestCpuPath());
 
+// Where the matches with r^2 < t2 lie: kInFront, kBehind, and both with kMixed, which are decided.
+struct DepthCounts {
+  int in_front = 0;
+  int behind = 0;
+  int decided = 0;
+};
+
+// Adds those of a group.
+void CountDepths(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
+                 const GroupMotion& motion, double t2, DepthCounts* counts,
+                 CpuPath path = BestCpuPath());
+
 }  // namespace rigel
 
 #endif  // RIGEL_MINIMAL_SCORE_KERNEL_H_

@@ -8,6 +8,7 @@
 
 #include "rigel/minimal/alignment.h"
 #include "rigel/refine/epipolar_residuals.h"
+#include "rigel/refine/inlier_selection.h"
 #include "rigel/refine/prior_residuals.h"
 
 namespace rigel {
@@ -71,12 +72,10 @@ std::optional<CramerRaoBound> ComputeCramerRaoBound(const RefineOptions& options
   const Pose& truth = *pair.truth;
   const GroupedMatches matches(pair.rig, pair.matches);
   std::vector<double> errors;
-  matches.SquaredErrors(truth, &errors);
-  std::vector<char> mask(errors.size());
+  std::vector<char> mask;
+  // An outlier that fits the truth by chance is no information.
   const double gate = std::max(options.threshold_px, kGateSigmas * *pair.noise_px);
-  for (size_t k = 0; k < errors.size(); ++k) {
-    mask[k] = errors[k] < gate * gate ? 1 : 0;
-  }
+  SelectInliers(matches, truth, gate, &errors, &mask);
   Matrix6d information = NoiseFreeInformation(pair, matches, mask, truth);
   if (options.use_prior) {
     const PriorResiduals prior(pair.prior, options.prior_kind, truth);

@@ -24,6 +24,7 @@ class FramePairSolver {
       : solver_(solver),
         matches_(matches),
         subset_(matches.rig(), EvenSubset(matches.matches(), kSubset)),
+        sign_subset_(matches.rig(), EvenSubset(matches.matches(), kSignSubset)),
         prepared_(matches.rig(), matches.matches(), alignment),
         sampler_(matches.groups(), solver.sampling, solver.sample_size),
         engine_(matches),
@@ -49,7 +50,7 @@ class FramePairSolver {
   }
 
   bool Admit(Model* model) const {
-    return model->AllFinite() && ResolveSign(matches_, threshold_px_, model);
+    return model->AllFinite() && ResolveSign(sign_subset_, threshold_px_, model);
   }
 
   bool Similar(const Model& a, const Model& b) const {
@@ -90,9 +91,9 @@ class FramePairSolver {
     options.loss_scale = threshold;
     options.inverse_scale = intra_only_ || !model->has_scale;
     if (options.inverse_scale) {
-      ResolveSignAndScale(matches_, threshold, model);
+      ResolveSignAndScale(sign_subset_, threshold, model);
     } else {
-      ResolveSign(matches_, threshold, model);
+      ResolveSign(sign_subset_, threshold, model);
     }
     matches_.SelectInliers(*model, threshold, &squared_errors_, &inliers_);
     return engine_.Minimize(options, inliers_, model);
@@ -101,6 +102,7 @@ class FramePairSolver {
   const SolverInfo& solver_;
   const GroupedMatches& matches_;
   GroupedMatches subset_;
+  GroupedMatches sign_subset_;
   PreparedMatches prepared_;
   Sampler sampler_;
   mutable SmallEngine engine_;

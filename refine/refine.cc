@@ -17,6 +17,7 @@
 #include "rigel/core/rays.h"
 #include "rigel/minimal/alignment.h"
 #include "rigel/refine/chance.h"
+#include "rigel/refine/inlier_selection.h"
 #include "rigel/refine/motion_parameterization.h"
 #include "rigel/refine/prior_residuals.h"
 #include "rigel/refine/reprojection_cost.h"
@@ -155,6 +156,7 @@ class Refiner {
         matches_(matches),
         prior_(prior),
         residuals_(matches, options.residual),
+        sign_subset_(matches.rig(), EvenSubset(matches.matches(), kSignSubset)),
         engine_(matches) {}
 
   RefineSummary Run(Pose* pose);
@@ -195,6 +197,7 @@ class Refiner {
   const GroupedMatches& matches_;
   const MotionPrior& prior_;
   const EpipolarResiduals residuals_;
+  const GroupedMatches sign_subset_;
   SmallEngine engine_;
   Alignment alignment_;
   std::vector<double> squared_errors_;
@@ -219,7 +222,7 @@ bool Refiner::SelectInliers(const Pose& pose) {
   previous_mask_ = mask_;
   const double gate =
       std::max(options_.threshold_px, kGateSigmas * options_.noise_px.value_or(0.0));
-  num_inliers_ = matches_.SelectInliers(pose, gate, &squared_errors_, &mask_);
+  num_inliers_ = rigel::SelectInliers(matches_, pose, gate, &squared_errors_, &mask_);
   return mask_ != previous_mask_;
 }
 
@@ -587,13 +590,13 @@ RefineSummary Refiner::Run(Pose* pose) {
   summary_.num_rounds = 0;
   summary_.num_iterations = 0;
   Pose result = *pose;
-  ResolveSign(matches_, options_.threshold_px, &result);
+  ResolveSign(sign_subset_, options_.threshold_px, &result);
   // Matches that hardly determine |t| would not bring it there from afar.
   if (options_.scale == ScaleMode::kFixed || WeighsDistance()) TakeDistance(&result);
   SelectInliers(result);
   EstimateNoise();
   if (SearchesScale(result)) {
-    ResolveSignAndScale(matches_, options_.threshold_px, &result);
+    ResolveSignAndScale(sign_subset_, options_.threshold_px, &result);
   }
   bool done = Iterate(&result);
   if (done && SearchesScale(result) && !ScaleIsFree(result) &&
@@ -603,9 +606,9 @@ RefineSummary Refiner::Run(Pose* pose) {
   // A t with another sign or scale is not a minimum: refine again from there.
   if (done) {
     const Eigen::Vector3d t = result.t;
-    const bool possible = ResolveSign(matches_, options_.threshold_px, &result);
+    const bool possible = ResolveSign(sign_subset_, options_.threshold_px, &result);
     if (!possible && SearchesScale(result)) {
-      ResolveSignAndScale(matches_, options_.threshold_px, &result);
+      ResolveSignAndScale(sign_subset_, options_.threshold_px, &result);
     }
     if (result.t != t) done = Iterate(&result);
   }

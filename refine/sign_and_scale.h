@@ -13,8 +13,11 @@
 
 namespace rigel {
 
-// Flips t if the matches that fit lie behind their cameras. Looks at about 100 of them, evenly
-// spread, and counts those with a parallax that noise cannot make (twice the threshold). False
+// As many matches tell (EvenSubset): both functions look at all that they get.
+inline constexpr size_t kSignSubset = 100;
+
+// Flips t if the matches that fit lie behind their cameras. Counts those with a parallax that noise
+// cannot make (twice the threshold). False
 // if they contradict either sign, so that the motion is physically impossible; where nothing can be
 // decided (no parallax) that is true, and t as it was.
 bool ResolveSign(const GroupedMatches& matches, double threshold_px, Pose* pose);
@@ -22,7 +25,7 @@ bool ResolveSign(const GroupedMatches& matches, double threshold_px, Pose* pose)
 // Chooses among t times +-4^k, k = 0..8, and the mean direction of the cameras' baselines, each
 // with the sign that its own matches want, at the same lengths: the one of least truncated squared
 // Sampson error in which a match behind a camera counts as an outlier. Too large a |t| does no
-// harm where scale is not observable. Looks at about 100 matches.
+// harm where scale is not observable.
 void ResolveSignAndScale(const GroupedMatches& matches, double threshold_px, Pose* pose);
 
 }  // namespace rigel

@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 
 #include "rigel/core/epipolar.h"
+#include "rigel/refine/inlier_selection.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -30,13 +31,18 @@ Eigen::VectorXd NumericRow(const FramePair& pair, const Match& m, const Eigen::M
   return row;
 }
 
-// J'J of the Sampson errors below the threshold, without what noise of the pixels adds to it.
+// J'J of the Sampson errors of the inliers, without what noise of the pixels adds to it.
 Eigen::MatrixXd NumericInformation(const FramePair& pair, double threshold_px,
                                    const Eigen::MatrixXd& basis) {
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(basis.cols(), basis.cols());
   const double variance = *pair.noise_px * *pair.noise_px;
-  for (const Match& m : pair.matches) {
-    if (std::abs(SampsonError(*pair.truth, pair.rig, m)) >= threshold_px) continue;
+  const GroupedMatches matches(pair.rig, pair.matches);
+  std::vector<double> errors;
+  std::vector<char> inliers;
+  SelectInliers(matches, *pair.truth, threshold_px, &errors, &inliers);
+  for (int k = 0; k < matches.size(); ++k) {
+    const Match& m = matches.matches()[k];
+    if (!inliers[k]) continue;
     const Eigen::VectorXd row = NumericRow(pair, m, basis);
     information += row * row.transpose() / variance;
     for (int coordinate = 0; coordinate < 4; ++coordinate) {

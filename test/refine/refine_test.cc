@@ -665,17 +665,21 @@ TEST(Refine, TheSummaryFitsTheMotionInTheOrderOfTheInput) {
     ASSERT_EQ(summary.termination, Termination::kConverged);
     ASSERT_EQ(summary.inliers.size(), pair.matches.size());
     std::vector<double> errors;
+    int fitting = 0;
     for (size_t k = 0; k < pair.matches.size(); ++k) {
       const double r = std::abs(SampsonError(pose, pair.rig, pair.matches[k]));
-      // Those that fit, but for what would lie behind a camera.
+      // Those that fit, but for what would lie behind a camera or is likelier an outlier.
       const RayPair rays = MakeRayPair(pair.rig, pair.matches[k]);
       const double decided = 2.0 * options.threshold_px / 400.0;
       const Cheirality side = TestCheirality(pose, rays, decided);
       const bool behind = side == Cheirality::kBehind || side == Cheirality::kMixed;
-      EXPECT_EQ(summary.inliers[k] != 0, r < options.threshold_px && !behind) << k;
+      const bool fits = r < options.threshold_px && !behind;
+      EXPECT_TRUE(fits || !summary.inliers[k]) << k;
+      fitting += fits;
       if (summary.inliers[k]) errors.push_back(r);
     }
     EXPECT_EQ(summary.num_inliers, static_cast<int>(errors.size()));
+    EXPECT_GE(summary.num_inliers, fitting - 3);
     EXPECT_NEAR(summary.median_residual_px, MedianOf(errors), 1e-9);
     const double n = summary.num_inliers;
     EXPECT_NEAR(summary.noise_px, 1.4826 * summary.median_residual_px * std::sqrt(n / (n - 6)),

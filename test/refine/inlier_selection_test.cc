@@ -1,0 +1,96 @@
+// Which matches are inliers: all of them without outliers, and with outliers those that fit by
+// chance are left out where their parallax gives them away.
+#include "rigel/refine/inlier_selection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "rigel/refine/refine.h"
+#include "rigel/test/refine/refine_scene.h"
+
+namespace rigel {
+namespace {
+
+constexpr int kPairs = 100;
+
+TEST(InlierSelection, WithoutOutliersItIsTheGateAlone) {
+  for (const double inter_share : {0.0, 0.5}) {
+    int lost = 0, total = 0;
+    for (int index = 0; index < kPairs; ++index) {
+      SceneOptions options;
+      options.inter_share = inter_share;
+      const FramePair pair = ScenePair(options, index);
+      const GroupedMatches matches(pair.rig, pair.matches);
+      std::vector<double> errors, gate_errors;
+      std::vector<char> selected, by_gate;
+      const double gate = kGateSigmas * options.noise_px;
+      const int count = SelectInliers(matches, *pair.truth, gate, &errors, &selected);
+      total += matches.SelectInliers(*pair.truth, gate, &gate_errors, &by_gate);
+      lost += static_cast<int>(std::count(by_gate.begin(), by_gate.end(), 1)) - count;
+      EXPECT_EQ(count, std::count(selected.begin(), selected.end(), 1));
+      EXPECT_EQ(errors, gate_errors);
+      for (size_t k = 0; k < selected.size(); ++k) EXPECT_LE(selected[k], by_gate[k]);
+    }
+    EXPECT_LE(lost, total / 2000);
+  }
+}
+
+// What the outliers that fit by chance cost: the direction of t without this selection.
+TEST(InlierSelection, ChanceOutliersCostNextToNothing) {
+  double with2 = 0.0, oracle2 = 0.0;
+  int good_lost = 0, good = 0, bad_kept = 0, bad_in_gate = 0;
+  for (int index = 0; index < kPairs; ++index) {
+    SceneOptions options;
+    options.num_matches = 600;
+    options.motion = MotionPattern::kRandom;
+    const FramePair clean = ScenePair(options, index);
+    options.outlier_share = 0.3;
+    const FramePair pair = ScenePair(options, index);
+    const GroupedMatches matches(pair.rig, pair.matches);
+    std::vector<Match> inliers;
+    std::vector<char> is_good(matches.size());
+    for (int k = 0; k < matches.size(); ++k) {
+      // The same seed: outliers take the place of the first matches of the clean pair.
+      const Match& m = matches.matches()[k];
+      for (const Match& other : clean.matches) {
+        if (m.pixel1 == other.pixel1 && m.pixel2 == other.pixel2) is_good[k] = 1;
+      }
+      if (is_good[k]) inliers.push_back(m);
+    }
+    ASSERT_EQ(inliers.size(), 420u);
+    std::vector<double> errors;
+    std::vector<char> selected, by_gate;
+    const double gate = kGateSigmas * options.noise_px;
+    SelectInliers(matches, *pair.truth, gate, &errors, &selected);
+    matches.SelectInliers(*pair.truth, gate, &errors, &by_gate);
+    for (int k = 0; k < matches.size(); ++k) {
+      good += is_good[k] && by_gate[k];
+      good_lost += is_good[k] && by_gate[k] && !selected[k];
+      bad_in_gate += !is_good[k] && by_gate[k];
+      bad_kept += !is_good[k] && selected[k];
+    }
+    RefineOptions refine;
+    refine.noise_px = options.noise_px;
+    Random random = Random::Stream(5, index);
+    Pose with = StartNear(*pair.truth, 0.05, 0.02, &random), oracle = with;
+    ASSERT_TRUE(Refine(refine, pair.rig, pair.matches, pair.prior, &with).IsSolutionUsable());
+    ASSERT_TRUE(Refine(refine, pair.rig, inliers, pair.prior, &oracle).IsSolutionUsable());
+    with2 += std::pow(DirectionErrorDeg(*pair.truth, with), 2);
+    oracle2 += std::pow(DirectionErrorDeg(*pair.truth, oracle), 2);
+  }
+  std::printf(
+      "[ measured ] direction RMS %.3f, of the inliers alone %.3f; kept %d of %d chance "
+      "outliers, lost %d of %d inliers\n",
+      std::sqrt(with2 / kPairs), std::sqrt(oracle2 / kPairs), bad_kept, bad_in_gate, good_lost,
+      good);
+  EXPECT_LT(std::sqrt(with2 / oracle2), 1.06);
+  EXPECT_LT(bad_kept, bad_in_gate / 2);
+  EXPECT_LT(good_lost, good / 1000);
+}
+
+}  // namespace
+}  // namespace rigel
