@@ -1,8 +1,9 @@
 // RANSAC over a solver concept: it knows how to draw, solve and score, and nothing of geometry.
 //
 // MSAC score (Torr and Zisserman 2000), the number of iterations adapts to the share of inliers,
-// scoring stops early once a hypothesis can no longer win, each better hypothesis is locally
-// optimized. Deterministic: the seed fixes the result.
+// scoring stops early once a hypothesis can no longer win, the best hypothesis of the first
+// min_iterations and each better one after them is locally optimized. Deterministic: the seed fixes
+// the result.
 #ifndef RIGEL_MINIMAL_RANSAC_H_
 #define RIGEL_MINIMAL_RANSAC_H_
 
@@ -163,6 +164,17 @@ RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOp
                               solver.sample_size(), options.confidence, max_iterations);
   };
 
+  bool optimized = true;  // the best minimal hypothesis
+  const auto optimize_best = [&] {
+    if (optimized || !options.local_optimization) return;
+    optimized = true;
+    Model model = result.best_minimal;
+    if (!solver.LocalOptimize(&model)) return;
+    int inliers = 0;
+    const double score = solver.Score(model, result.score, &inliers);
+    keep_best(model, score, inliers);
+  };
+
   while (result.iterations < std::min(max_iterations, std::max(needed, options.min_iterations))) {
     ++result.iterations;
     if (!solver.Draw(&random, sample)) break;
@@ -184,13 +196,13 @@ RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOp
       result.best_minimal = model;
       result.minimal_score = score;
       keep_best(model, score, inliers);
-      if (options.local_optimization && solver.LocalOptimize(&model)) {
-        int optimized_inliers = 0;
-        const double optimized = solver.Score(model, result.score, &optimized_inliers);
-        keep_best(model, optimized, optimized_inliers);
-      }
+      optimized = false;
+      if (result.iterations > options.min_iterations) optimize_best();
     }
+    // Before, a better hypothesis would soon make the optimization of this one superfluous.
+    if (result.iterations == options.min_iterations) optimize_best();
   }
+  optimize_best();
   for (int k = 0; k < finalists.size && result.found; ++k) {
     Model model = finalists.items[k].model;
     if (solver.Similar(model, result.best) || !solver.OptimizeLoosely(&model)) continue;

@@ -27,7 +27,9 @@ class FramePairSolver {
         sign_subset_(matches.rig(), EvenSubset(matches.matches(), kSignSubset)),
         prepared_(matches.rig(), matches.matches(), alignment),
         sampler_(matches.groups(), solver.sampling, solver.sample_size),
-        engine_(matches),
+        optimized_(matches.rig(), EvenSubset(matches.matches(), kOptimized)),
+        loose_engine_(subset_),
+        engine_(optimized_),
         threshold_px_(threshold_px) {
     for (const MatchGroup& group : matches.groups()) {
       if (group.camera1 != group.camera2) intra_only_ = false;
@@ -67,15 +69,15 @@ class FramePairSolver {
 
   // In two steps, at the loose threshold and at the threshold.
   bool OptimizeLoosely(Model* model) const {
-    for (const double threshold : {kLooseFactor * threshold_px_, threshold_px_}) {
-      if (!OptimizeAt(threshold, model)) return false;
-    }
-    return Admit(model);
+    return OptimizeOn(subset_, &loose_engine_, kLooseFactor * threshold_px_, model) &&
+           OptimizeOn(optimized_, &engine_, threshold_px_, model) && Admit(model);
   }
 
   bool LocalOptimize(Model* model) const {
     Model optimized = *model;
-    if (!OptimizeAt(threshold_px_, &optimized) || !Admit(&optimized)) return false;
+    if (!OptimizeOn(optimized_, &engine_, threshold_px_, &optimized) || !Admit(&optimized)) {
+      return false;
+    }
     *model = optimized;
     return true;
   }
@@ -85,8 +87,11 @@ class FramePairSolver {
   static constexpr double kLooseFactor = 4.0;
   // So many matches tell a good hypothesis from a bad one loosely.
   static constexpr size_t kSubset = 128;
+  // The refinement takes all; until then these are enough.
+  static constexpr size_t kOptimized = 300;
 
-  bool OptimizeAt(double threshold, Model* model) const {
+  bool OptimizeOn(const GroupedMatches& matches, SmallEngine* engine, double threshold,
+                  Model* model) const {
     SmallEngineOptions options;
     options.loss_scale = threshold;
     options.inverse_scale = intra_only_ || !model->has_scale;
@@ -95,8 +100,8 @@ class FramePairSolver {
     } else {
       ResolveSign(sign_subset_, threshold, model);
     }
-    matches_.SelectInliers(*model, threshold, &squared_errors_, &inliers_);
-    return engine_.Minimize(options, inliers_, model);
+    matches.SelectInliers(*model, threshold, &squared_errors_, &inliers_);
+    return engine->Minimize(options, inliers_, model);
   }
 
   const SolverInfo& solver_;
@@ -105,6 +110,8 @@ class FramePairSolver {
   GroupedMatches sign_subset_;
   PreparedMatches prepared_;
   Sampler sampler_;
+  GroupedMatches optimized_;
+  mutable SmallEngine loose_engine_;
   mutable SmallEngine engine_;
   double threshold_px_;
   mutable std::vector<double> squared_errors_;

@@ -18,8 +18,17 @@ constexpr double kFar = 1000.0;
 // The rotation found with a wrong |t| is off by a few sigma.
 constexpr double kLooseFactor = 4.0;
 
-// So many tell one minimum from another.
+// So many tell one minimum from another, and so many where the minima are.
 constexpr size_t kSubset = 200;
+constexpr size_t kCoarseSubset = 100;
+// So many lengths are followed to their minima.
+constexpr size_t kPolished = 3;
+
+struct Candidate {
+  double length = 0.0;  // the start's
+  double score = 0.0;
+  Pose motion;
+};
 
 double ShortestLength(const GroupedMatches& matches, const Eigen::Matrix3d& R) {
   double shortest = 0.0;
@@ -40,7 +49,8 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
   if (!(norm > 0) || !(length > 0)) return false;
   const Eigen::Vector3d direction = pose->t / norm;
   const GroupedMatches subset(matches.rig(), EvenSubset(matches.matches(), kSubset));
-  SmallEngine engine(subset);
+  const GroupedMatches coarse(matches.rig(), EvenSubset(matches.matches(), kCoarseSubset));
+  SmallEngine engine(subset), coarse_engine(coarse);
   std::vector<double> errors;
   std::vector<char> mask(subset.size(), 1);
   const std::vector<char> all = mask;
@@ -63,35 +73,50 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
     return scored.ScoreInFront(motion, threshold_px, std::numeric_limits<double>::infinity(),
                                &inliers);
   };
+  const auto optimize = [&](const GroupedMatches& with, SmallEngine* solver, double threshold,
+                            Pose* motion) {
+    SmallEngineOptions options;
+    options.inverse_scale = true;
+    options.loss_scale = threshold;
+    with.SelectInliers(*motion, threshold, &errors, &mask);
+    return solver->Minimize(options, mask, motion);
+  };
+
+  // From each length loosely, then from the best few of these and from the longest in full.
+  std::vector<Candidate> candidates;
+  for (const double from : lengths) {
+    Candidate candidate;
+    candidate.length = from;
+    candidate.motion = *pose;
+    candidate.motion.t = from * direction;
+    ResolveSign(coarse, kLooseFactor * threshold_px, &candidate.motion);
+    optimize(coarse, &coarse_engine, kLooseFactor * threshold_px, &candidate.motion);
+    candidate.score = score_of(subset, candidate.motion);
+    candidates.push_back(candidate);
+  }
+  const auto by_score = [](const Candidate& x, const Candidate& y) { return x.score < y.score; };
+  std::stable_sort(candidates.begin(), candidates.end() - 1, by_score);
+  if (candidates.size() > kPolished + 1) {
+    candidates.erase(candidates.begin() + kPolished, candidates.end() - 1);
+  }
+  for (Candidate& candidate : candidates) {
+    for (int pass = 0; pass < 2; ++pass) {
+      if (!optimize(subset, &engine, threshold_px, &candidate.motion)) break;
+    }
+    candidate.score = score_of(subset, candidate.motion);
+  }
+  // The start takes its place among the lengths; longest first.
+  candidates.push_back({norm, score_of(subset, *pose), *pose});
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& x, const Candidate& y) { return x.length > y.length; });
   const double outlier = threshold_px * threshold_px;
   double best = std::numeric_limits<double>::infinity();
   Pose found = *pose;
-  // The start takes its place among the lengths.
-  bool start_pending = true;
-  const auto consider = [&](const Pose& candidate) {
-    const double score = score_of(subset, candidate);
-    if (!(score < best - outlier)) return;
-    best = score;
-    found = candidate;
-  };
-  for (auto it = lengths.rbegin(); it != lengths.rend(); ++it) {
-    if (start_pending && norm > *it) {
-      consider(*pose);
-      start_pending = false;
-    }
-    Pose candidate = *pose;
-    candidate.t = *it * direction;
-    ResolveSign(subset, kLooseFactor * threshold_px, &candidate);
-    SmallEngineOptions options;
-    options.inverse_scale = true;
-    for (const double factor : {kLooseFactor, 1.0, 1.0}) {
-      options.loss_scale = factor * threshold_px;
-      subset.SelectInliers(candidate, options.loss_scale, &errors, &mask);
-      if (!engine.Minimize(options, mask, &candidate)) break;
-    }
-    consider(candidate);
+  for (const Candidate& candidate : candidates) {
+    if (!(candidate.score < best - outlier)) continue;
+    best = candidate.score;
+    found = candidate.motion;
   }
-  if (start_pending) consider(*pose);
   // What the subset prefers must not be worse for all.
   if (found.t == pose->t || !(score_of(matches, found) < score_of(matches, *pose) + outlier)) {
     return false;

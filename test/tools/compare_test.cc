@@ -350,7 +350,7 @@ TEST_F(CompareTest, UseSelectsTheMatches) {
 TEST_F(CompareTest, PriorFromBodyTruthAndWithNoise) {
   // A random axis: the body's Y is a bad prior, the truth a good one.
   const std::string matches =
-      Simulate("in", {"--pairs=8", "--inter_share=0.5", "--rotation_axis=random",
+      Simulate("in", {"--pairs=24", "--inter_share=0.5", "--rotation_axis=random",
                       "--rotation_deg=3", "--motion=random"});
   const auto raw_rotation = [&](const Args& more) {
     return Entry(Args{"--matches=" + matches, "--solvers=4pt", "--refine=none"} +
@@ -369,13 +369,13 @@ TEST_F(CompareTest, PriorFromBodyTruthAndWithNoise) {
   EXPECT_GT(raw_rotation({"--prior_noise_deg=2", "--prior_noise_axis=random"}), 0.5);
 
   // Without any prior in the files.
-  for (int k = 0; k < 8; ++k) {
+  for (int k = 0; k < 24; ++k) {
     for (const char* line : {"gravity1", "gravity2", "axis"}) {
-      RemoveLine(matches + "/00000" + std::to_string(k) + ".matches", line);
+      RemoveLine(matches + "/0000" + (k < 10 ? "0" : "") + std::to_string(k) + ".matches", line);
     }
   }
   EXPECT_EQ(Entry({"--matches=" + matches, "--solvers=4pt-axis", "--prior=truth"})["failures"], 0);
-  EXPECT_EQ(Entry({"--matches=" + matches, "--solvers=4pt-axis", "--prior=file"})["failures"], 8);
+  EXPECT_EQ(Entry({"--matches=" + matches, "--solvers=4pt-axis", "--prior=file"})["failures"], 24);
 }
 
 TEST_F(CompareTest, RefinementMayLeaveAWrongPriorOrHoldItExact) {
