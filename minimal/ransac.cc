@@ -19,6 +19,10 @@ bool RansacOptions::IsValid(std::string* error) const {
     *error = "min_iterations must not be negative";
     return false;
   }
+  if (!(min_sample_distance_px >= 0)) {
+    *error = "min_sample_distance_px must not be negative";
+    return false;
+  }
   if (num_finalists < 0 || num_finalists > kMaxFinalists) {
     *error = "num_finalists must lie in 0.." + std::to_string(kMaxFinalists);
     return false;

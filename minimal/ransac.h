@@ -20,6 +20,12 @@
 namespace rigel {
 
 inline constexpr int kMaxFinalists = 16;
+inline constexpr int kMaxRedraws = 10;
+
+enum class ScoreKind {
+  kMsac,    // sum min(r^2, threshold^2), Torr and Zisserman 2000
+  kMagsac,  // MAGSAC++, Barath et al. 2020: the noise level marginalized up to the threshold
+};
 
 struct RansacOptions {
   double threshold_px = 1.5;   // > 0; 3 sigma keeps the estimate efficient
@@ -28,6 +34,15 @@ struct RansacOptions {
   // At least so many: noise makes most samples of inliers poor hypotheses.
   int min_iterations = 100;
   bool local_optimization = true;
+  // Samples from the matches of best score first, where they have scores.
+  bool prosac = true;
+  // Scoring stops where a hypothesis can no longer win. Changes the time alone.
+  bool early_termination = true;
+  ScoreKind score = ScoreKind::kMsac;
+  // Draws again where two matches of a sample lie within min_sample_distance_px of one another:
+  // such samples say little. At most kMaxRedraws times.
+  bool spread_samples = false;
+  double min_sample_distance_px = 30.0;  // >= 0
   // After the loop, so many hypotheses are locally optimized that do best at a loose threshold and
   // differ from one another and from the best: where the prior is off, no minimal hypothesis fits
   // well at the threshold, and the one that fits best may be far from the truth. 0 to
@@ -155,6 +170,9 @@ RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOp
   ransac_internal::Finalists<Model> finalists;
   int needed = max_iterations;
 
+  const auto bound = [&](double score) {
+    return options.early_termination ? score : std::numeric_limits<double>::infinity();
+  };
   const auto keep_best = [&](const Model& model, double score, int inliers) {
     if (!(score < result.score)) return;
     result.best = model;
@@ -183,14 +201,16 @@ RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOp
       ++result.hypotheses;
       Model model = (*solutions)[k];
       if (capacity > 0) {
-        const double loose = solver.LooseScore(model, finalists.Worst(capacity));
+        const double loose = solver.LooseScore(model, bound(finalists.Worst(capacity)));
         if (loose < finalists.Worst(capacity)) finalists.Add(solver, model, loose, capacity);
       }
       // Also false for NaN. The quick score never rejects a winner.
-      if (!(solver.QuickScore(model, result.minimal_score) < result.minimal_score)) continue;
+      if (!(solver.QuickScore(model, bound(result.minimal_score)) < result.minimal_score)) {
+        continue;
+      }
       if (!solver.Admit(&model)) continue;
       int inliers = 0;
-      const double score = solver.Score(model, result.minimal_score, &inliers);
+      const double score = solver.Score(model, bound(result.minimal_score), &inliers);
       if (!(score < result.minimal_score)) continue;
       result.found = true;
       result.best_minimal = model;

@@ -42,11 +42,26 @@ const MatchGroup& GroupOf(const std::vector<MatchGroup>& groups, int index) {
 
 }  // namespace
 
-Sampler::Sampler(const std::vector<MatchGroup>& groups, SampleKind kind, int sample_size)
-    : groups_(groups), kind_(kind), sample_size_(sample_size) {
-  for (const MatchGroup& group : groups) num_matches_ += group.size;
-  const int of_one_pair = kind == SampleKind::kOnePairPlusOne ? sample_size - 1 : sample_size;
+Sampler::Sampler(const std::vector<MatchGroup>& groups, SampleKind kind, int sample_size) {
+  groups_.reserve(groups.size());
+  allowed_.reserve(groups.size());
+  Set(groups, kind, sample_size);
+}
+
+void Sampler::Set(const std::vector<MatchGroup>& groups, SampleKind kind, int sample_size) {
+  kind_ = kind;
+  sample_size_ = sample_size;
+  groups_.clear();
+  allowed_.clear();
+  num_matches_ = 0;
+  num_allowed_ = 0;
   for (const MatchGroup& group : groups) {
+    if (group.size == 0) continue;
+    groups_.push_back(group);
+    num_matches_ += group.size;
+  }
+  const int of_one_pair = kind == SampleKind::kOnePairPlusOne ? sample_size - 1 : sample_size;
+  for (const MatchGroup& group : groups_) {
     if (kind == SampleKind::kOneCamera && group.camera1 != group.camera2) continue;
     if (group.size < of_one_pair) continue;
     allowed_.push_back(group);

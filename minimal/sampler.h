@@ -12,8 +12,7 @@ namespace rigel {
 // Which matches a solver's sample may hold.
 enum class SampleKind {
   // Any. A sample from one camera pair says nothing about scale, so where there are several pairs
-  // the
-  // first two matches come from different ones.
+  // the first two matches come from different ones.
   kSpread,
   // All of one camera, the same at both times.
   kOneCamera,
@@ -27,6 +26,9 @@ class Sampler {
   // `groups` are those of the grouped matches that the indices refer to.
   Sampler(const std::vector<MatchGroup>& groups, SampleKind kind, int sample_size);
 
+  // The same for other groups, which may be empty. No heap if there are no more than before.
+  void Set(const std::vector<MatchGroup>& groups, SampleKind kind, int sample_size);
+
   // False if the matches allow no sample at all.
   bool CanDraw() const { return can_draw_; }
 
@@ -34,12 +36,12 @@ class Sampler {
   bool Draw(Random* random, int* sample) const;
 
  private:
-  std::vector<MatchGroup> groups_;
+  std::vector<MatchGroup> groups_;   // with matches
   std::vector<MatchGroup> allowed_;  // groups that can fill the part of one camera pair
   int num_matches_ = 0;
   int num_allowed_ = 0;  // matches in them
-  SampleKind kind_;
-  int sample_size_;
+  SampleKind kind_ = SampleKind::kSpread;
+  int sample_size_ = 0;
   bool can_draw_ = false;
 };
 

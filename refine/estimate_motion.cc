@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "rigel/minimal/prepared_matches.h"
+#include "rigel/minimal/prosac.h"
 #include "rigel/minimal/sampler.h"
 #include "rigel/refine/sign_and_scale.h"
 #include "rigel/refine/small_engine.h"
@@ -20,17 +22,22 @@ class FramePairSolver {
   using Solutions = rigel::Solutions;
 
   FramePairSolver(const SolverInfo& solver, const GroupedMatches& matches,
-                  const Alignment& alignment, double threshold_px)
+                  const Alignment& alignment, const RansacOptions& options)
       : solver_(solver),
         matches_(matches),
         subset_(matches.rig(), EvenSubset(matches.matches(), kSubset)),
         sign_subset_(matches.rig(), EvenSubset(matches.matches(), kSignSubset)),
         prepared_(matches.rig(), matches.matches(), alignment),
         sampler_(matches.groups(), solver.sampling, solver.sample_size),
+        prosac_(matches, solver.sampling, solver.sample_size, options.max_iterations),
+        options_(options),
         optimized_(matches.rig(), EvenSubset(matches.matches(), kOptimized)),
         loose_engine_(subset_),
         engine_(optimized_),
-        threshold_px_(threshold_px) {
+        threshold_px_(options.threshold_px) {
+    if (options.score == ScoreKind::kMagsac) {
+      loss_ = MagsacTable(options.threshold_px * options.threshold_px);
+    }
     for (const MatchGroup& group : matches.groups()) {
       if (group.camera1 != group.camera2) intra_only_ = false;
     }
@@ -38,17 +45,24 @@ class FramePairSolver {
 
   int num_data() const { return matches_.size(); }
   int sample_size() const { return solver_.sample_size; }
-  bool Draw(Random* random, int* sample) const { return sampler_.Draw(random, sample); }
+  bool Draw(Random* random, int* sample) const {
+    for (int k = 0; k < kMaxRedraws; ++k) {
+      const bool drawn =
+          options_.prosac ? prosac_.Draw(random, sample) : sampler_.Draw(random, sample);
+      if (!drawn || !options_.spread_samples || IsSpread(sample)) return drawn;
+    }
+    return true;
+  }
   int MinimalSolver(const int* sample, Solutions* solutions) const {
     return solver_.solve(prepared_, sample, solutions);
   }
   // Does not look at depths, which only add to the score; the sign of t matters little to it.
   double QuickScore(const Model& model, double bound) const {
     int inliers = 0;
-    return matches_.Score(model, threshold_px_, bound, &inliers);
+    return matches_.Score(model, threshold_px_, bound, &inliers, Loss());
   }
   double Score(const Model& model, double bound, int* inliers) const {
-    return matches_.ScoreInFront(model, threshold_px_, bound, inliers);
+    return matches_.ScoreInFront(model, threshold_px_, bound, inliers, Loss());
   }
 
   bool Admit(Model* model) const {
@@ -90,6 +104,24 @@ class FramePairSolver {
   // The refinement takes all; until then these are enough.
   static constexpr size_t kOptimized = 300;
 
+  const LossTable* Loss() const { return loss_.has_value() ? &*loss_ : nullptr; }
+
+  // No two matches of a camera pair near one another in the first image.
+  bool IsSpread(const int* sample) const {
+    const double limit2 = options_.min_sample_distance_px * options_.min_sample_distance_px;
+    for (int i = 0; i < solver_.sample_size; ++i) {
+      const Match& a = matches_.matches()[sample[i]];
+      for (int j = 0; j < i; ++j) {
+        const Match& b = matches_.matches()[sample[j]];
+        if (a.camera1 == b.camera1 && a.camera2 == b.camera2 &&
+            (a.pixel1 - b.pixel1).squaredNorm() < limit2) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
   bool OptimizeOn(const GroupedMatches& matches, SmallEngine* engine, double threshold,
                   Model* model) const {
     SmallEngineOptions options;
@@ -110,6 +142,9 @@ class FramePairSolver {
   GroupedMatches sign_subset_;
   PreparedMatches prepared_;
   Sampler sampler_;
+  mutable ProsacSampler prosac_;
+  const RansacOptions& options_;
+  std::optional<LossTable> loss_;
   GroupedMatches optimized_;
   mutable SmallEngine loose_engine_;
   mutable SmallEngine engine_;
@@ -186,7 +221,7 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
   MotionEstimate estimate;
   const auto ransac_start = std::chrono::steady_clock::now();
   const GroupedMatches matches(pair.rig, pair.matches);
-  const FramePairSolver problem(solver, matches, alignment, options.ransac.threshold_px);
+  const FramePairSolver problem(solver, matches, alignment, options.ransac);
   Solutions solutions;
   const RansacResult<Solution> ransac = Ransac(problem, options.ransac, &solutions);
   estimate.ransac_ms = MillisecondsSince(ransac_start);
