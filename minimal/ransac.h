@@ -223,9 +223,11 @@ RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOp
     if (result.iterations == options.min_iterations) optimize_best();
   }
   optimize_best();
-  for (int k = 0; k < finalists.size && result.found; ++k) {
-    Model model = finalists.items[k].model;
-    if (solver.Similar(model, result.best) || !solver.OptimizeLoosely(&model)) continue;
+  // From the best one too: few matches of large parallax may be out of its reach.
+  const Model best = result.best;
+  for (int k = capacity > 0 ? -1 : 0; k < finalists.size && result.found; ++k) {
+    Model model = k < 0 ? best : finalists.items[k].model;
+    if ((k >= 0 && solver.Similar(model, best)) || !solver.OptimizeLoosely(&model)) continue;
     int inliers = 0;
     const double score = solver.Score(model, result.score, &inliers);
     keep_best(model, score, inliers);

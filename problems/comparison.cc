@@ -79,7 +79,7 @@ PairResult ComparePair(const FramePair& pair, const EstimateOptions& options,
   if (refined) {
     result.refined = ErrorsOf(*pair.truth, estimate.pose, direction_means, scale_means);
     RefineOptions bound_options = options.refine;
-    bound_options.prior_kind = FindSolver(options.solver)->prior;
+    bound_options.prior_kind = FindSolver(estimate.solver)->prior;
     bound_options.threshold_px = options.ransac.threshold_px;
     if (const auto bound = ComputeCramerRaoBound(bound_options, pair)) {
       result.bound = MotionBound{bound->rotation, {}};

@@ -130,6 +130,7 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
     if (pairs[k].time1 && pairs[k].time2) entry["time"] = {*pairs[k].time1, *pairs[k].time2};
     entry["matches"] = report.matches[k].all;
     if (e.HasMotion()) {
+      entry["solver"] = e.solver;
       entry["inliers"] = e.num_inliers;
       entry["iterations"] = e.iterations;
       if (times) entry["time_ms"] = {{"ransac", e.ransac_ms}, {"refine", e.refine_ms}};

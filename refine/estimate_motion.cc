@@ -11,6 +11,7 @@
 #include "rigel/minimal/sampler.h"
 #include "rigel/refine/sign_and_scale.h"
 #include "rigel/refine/small_engine.h"
+#include "rigel/refine/solver_choice.h"
 
 namespace rigel {
 namespace {
@@ -187,13 +188,13 @@ const char* EstimateStatusName(EstimateStatus status) {
 }
 
 bool EstimateOptions::IsValid(std::string* error) const {
-  const SolverInfo* info = FindSolver(solver);
-  if (info == nullptr) {
-    *error = "there is no solver '" + solver + "'; expected one of " + SolverNames();
+  if (!IsSolverName(solver)) {
+    *error = "there is no solver '" + solver + "'; expected one of " + SolverNamesWithAuto();
     return false;
   }
   RefineOptions refined = refine;
-  refined.prior_kind = info->prior;
+  // "auto" may find a prior of any kind.
+  refined.prior_kind = solver == kAutoSolver ? PriorKind::kVertical : FindSolver(solver)->prior;
   return ransac.IsValid(error) && (!refine_motion || refined.IsValid(error));
 }
 
@@ -202,31 +203,53 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
   if (!options.IsValid(&error) || !pair.IsValid(&error)) {
     return Refused(EstimateStatus::kInvalidInput, error);
   }
-  const SolverInfo& solver = *FindSolver(options.solver);
+  const double distance = pair.prior.distance.value_or(0.0);
   if (options.refine_motion && options.refine.scale == ScaleMode::kFixed &&
-      !(pair.prior.distance.value_or(0.0) > 0)) {
+      !(distance > 0 && std::isfinite(distance))) {
     return Refused(EstimateStatus::kInvalidInput,
                    "|t| is to be held, and the prior states no positive distance");
   }
-  Alignment alignment;
-  if (!MakeAlignment(pair.prior, solver.prior, &alignment, &error)) {
-    return Refused(EstimateStatus::kInvalidInput, options.solver + ": " + error);
+  const bool choose = options.solver == kAutoSolver;
+  const bool exact_prior =
+      options.refine_motion && (options.refine.form == RefineForm::kPrior ||
+                                options.refine.form == RefineForm::kPriorDepths);
+  std::vector<const SolverInfo*> solvers = {FindSolver(options.solver)};
+  if (choose) {
+    solvers = SuggestSolvers(pair.prior);
+    if (exact_prior) solvers.resize(1);
   }
-  if (static_cast<int>(pair.matches.size()) < solver.sample_size) {
-    return Refused(EstimateStatus::kTooFewMatches, std::to_string(pair.matches.size()) +
-                                                       " matches, " + options.solver + " needs " +
-                                                       std::to_string(solver.sample_size));
-  }
+  const int num_matches = static_cast<int>(pair.matches.size());
 
   MotionEstimate estimate;
   const auto ransac_start = std::chrono::steady_clock::now();
   const GroupedMatches matches(pair.rig, pair.matches);
-  const FramePairSolver problem(solver, matches, alignment, options.ransac);
-  Solutions solutions;
-  const RansacResult<Solution> ransac = Ransac(problem, options.ransac, &solutions);
+  RansacResult<Solution> ransac;
+  const SolverInfo* solver = nullptr;
+  for (const SolverInfo* candidate : solvers) {
+    Alignment alignment;
+    if (!MakeAlignment(pair.prior, candidate->prior, &alignment, &error)) {
+      return Refused(EstimateStatus::kInvalidInput, options.solver + ": " + error);
+    }
+    if (num_matches < candidate->sample_size) {
+      if (solver != nullptr) break;
+      return Refused(EstimateStatus::kTooFewMatches, std::to_string(num_matches) + " matches, " +
+                                                         candidate->name + " needs " +
+                                                         std::to_string(candidate->sample_size));
+    }
+    const FramePairSolver problem(*candidate, matches, alignment, options.ransac);
+    Solutions solutions;
+    const RansacResult<Solution> result = Ransac(problem, options.ransac, &solutions);
+    estimate.iterations += result.iterations;
+    estimate.hypotheses += result.hypotheses;
+    if (solver == nullptr || (result.found && !(ransac.found && ransac.score <= result.score))) {
+      ransac = result;
+      solver = candidate;
+    }
+    const double inlier_ratio = result.num_inliers / static_cast<double>(num_matches);
+    if (result.found && !IsDoubtful(pair.prior, *candidate, result.best, inlier_ratio)) break;
+  }
   estimate.ransac_ms = MillisecondsSince(ransac_start);
-  estimate.iterations = ransac.iterations;
-  estimate.hypotheses = ransac.hypotheses;
+  estimate.solver = solver->name;
   if (!ransac.found) {
     estimate.status = EstimateStatus::kNoSolution;
     estimate.message = "no sample of the matches determines a motion";
@@ -242,7 +265,7 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
 
   const auto refine_start = std::chrono::steady_clock::now();
   RefineOptions refine = options.refine;
-  refine.prior_kind = solver.prior;
+  refine.prior_kind = solver->prior;
   refine.threshold_px = options.ransac.threshold_px;
   estimate.refine = Refine(refine, matches, pair.prior, &estimate.pose);
   estimate.refine_ms = MillisecondsSince(refine_start);

@@ -13,7 +13,10 @@
 namespace rigel {
 
 struct EstimateOptions {
-  std::string solver = "4pt-axis";  // a name of SolverCatalogue()
+  // A name of SolverCatalogue(), or "auto": SuggestSolvers() of solver_choice.h, one after the
+  // other while the result is doubtful, so that a wrong prior costs time and not accuracy. With a
+  // form that takes the prior as exact (kPrior, kPriorDepths) only the first of them.
+  std::string solver = "4pt-axis";
   RansacOptions ransac;
   bool refine_motion = true;
   // ScaleMode::kFixed needs the prior's distance: the |t| that RANSAC finds may be arbitrary.
@@ -37,8 +40,9 @@ const char* EstimateStatusName(EstimateStatus status);
 struct MotionEstimate {
   EstimateStatus status = EstimateStatus::kNotRun;
   std::string message = "EstimateMotion was not called.";
-  Pose pose;     // the estimate: refined where that was asked for and done
-  Solution raw;  // the best-scoring minimal hypothesis of RANSAC, before any optimization
+  std::string solver;  // whose hypotheses led to it
+  Pose pose;           // the estimate: refined where that was asked for and done
+  Solution raw;        // the best-scoring minimal hypothesis of RANSAC, before any optimization
   int num_inliers = 0;
   double inlier_ratio = 0.0;
   int iterations = 0;

@@ -7,33 +7,38 @@
 namespace rigel {
 namespace {
 
-// The band beyond the gate where the outliers are counted, in gates.
-constexpr double kBand = 20.0;
 // Inliers that a place where there is no other is likely to have.
 constexpr double kPriorInliers = 0.1;
 
 // Counts of matches by the logarithm of their parallax, four bins to a factor of two.
 class Histogram {
  public:
+  static constexpr int kReach = 4;
   static int Bin(double sin2_parallax) {
     // sin^2 halves twice where the sine halves.
     const double octaves = 0.5 * std::log2(std::max(sin2_parallax, 1e-14));
     return std::clamp(kBins - 2 + static_cast<int>(std::floor(4.0 * octaves)), 1, kBins - 2);
   }
   void Add(int bin) { ++counts_[bin]; }
-  // How many there are of about the same parallax, within a factor of 1.3.
-  int Near(int bin) const { return counts_[bin - 1] + counts_[bin] + counts_[bin + 1]; }
-  // The same expected where there are few: from a wider neighbourhood.
-  double NearSmoothed(int bin) const {
+  // How many there are within a factor of 1.3 of a parallax, as the mean over a wider neighbourhood
+  // tells: down to a half, as the parallax of inliers ends somewhere, and up to `above` bins.
+  double Near(int bin, int above) const {
     const int first = std::max(bin - kReach, 0);
-    const int last = std::min(bin + kReach, kBins - 1);
+    const int last = std::min(bin + above, kBins - 1);
     int sum = 0;
     for (int k = first; k <= last; ++k) sum += counts_[k];
-    return 3.0 * sum / (2 * kReach + 1);
+    return 3.0 * sum / (last - first + 1);
+  }
+  // sin^2 of the 90th percentile.
+  double HighSin2() const {
+    int total = 0;
+    for (const int count : counts_) total += count;
+    int bin = kBins - 1;
+    for (int above = counts_[bin]; bin > 0 && above < 0.1 * total;) above += counts_[--bin];
+    return std::exp2(2.0 * (bin - (kBins - 2) + 1) / 4.0);
   }
 
  private:
-  static constexpr int kReach = 4;
   static constexpr int kBins = 96;
   std::array<int, kBins> counts_{};
 };
@@ -70,27 +75,34 @@ int SelectInliers(const GroupedMatches& matches, const Pose& pose, double gate_p
     double* errors = squared_errors->data() + group.begin;
     char* selected = inliers->data() + group.begin;
     SelectInFront(matches.Pixels(group), rays, F.data(), matches.MotionOf(group, pose, gate_px),
-                  kBand * kBand * gate2, errors, selected);
+                  kBandEnd * kBandEnd * gate2, errors, selected);
     SquaredParallax(rays, pose.R, group.size, sin2.data() + group.begin);
     for (int k = 0; k < group.size; ++k) {
       if (!selected[k]) continue;
       const int bin = Histogram::Bin(sin2[group.begin + k]);
       bins[group.begin + k] = static_cast<char>(bin);
       const bool fits = errors[k] < gate2;
-      (fits ? within : beyond)[kind].Add(bin);
+      const bool outlier = errors[k] >= kBandBegin * kBandBegin * gate2;
+      if (fits) within[kind].Add(bin);
+      if (outlier) beyond[kind].Add(bin);
       selected[k] = fits;
       count += fits;
-      num_beyond += !fits;
+      num_beyond += outlier;
     }
   }
   if (num_beyond == 0) return count;
+  const double high2[2] = {within[kIntra].HighSin2(), within[kInter].HighSin2()};
   for (const MatchGroup& group : matches.groups()) {
     const int kind = group.camera1 == group.camera2 ? kIntra : kInter;
     for (int k = group.begin; k < group.begin + group.size; ++k) {
       if (!(*inliers)[k]) continue;
-      const double outliers = beyond[kind].NearSmoothed(bins[k]) / (kBand - 1.0);
-      const double others = within[kind].Near(bins[k]) - 1 + kPriorInliers;
-      if (outliers <= kMaxOutlierProbability * (outliers + others)) continue;
+      const double outliers =
+          beyond[kind].Near(bins[k], Histogram::kReach) / (kBandEnd - kBandBegin);
+      const double others = within[kind].Near(bins[k], 1) - 0.5 + kPriorInliers;
+      const double limit =
+          std::clamp(kMaxOutlierProbability * high2[kind] / std::max(sin2[k], 1e-300),
+                     kMinOutlierProbability, kMaxOutlierProbability);
+      if (outliers <= limit * (outliers + others)) continue;
       (*inliers)[k] = 0;
       --count;
     }

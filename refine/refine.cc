@@ -149,6 +149,25 @@ double Median(std::vector<double>* values) {
   return *middle;
 }
 
+bool CanBeWeighed(const MotionPrior& prior, PriorKind kind, std::string* error) {
+  const auto positive = [](const std::optional<double>& sigma) {
+    return !sigma.has_value() || (*sigma > 0 && std::isfinite(*sigma));
+  };
+  if (!positive(prior.gravity_sigma) || !positive(prior.axis_sigma) ||
+      !positive(prior.normal_sigma) || !(prior.distance_sigma >= 0) ||
+      !std::isfinite(prior.distance_sigma)) {
+    *error = "a sigma of the prior is not positive and finite";
+    return false;
+  }
+  const double distance = prior.distance.value_or(0.0);
+  if (!(distance >= 0) || !std::isfinite(distance)) {
+    *error = "the prior's distance is negative or not finite";
+    return false;
+  }
+  Alignment alignment;
+  return !HasPrior(prior, kind) || MakeAlignment(prior, kind, &alignment, error);
+}
+
 class Refiner {
  public:
   Refiner(const RefineOptions& options, const GroupedMatches& matches, const MotionPrior& prior)
@@ -205,6 +224,7 @@ class Refiner {
   std::vector<double> weights_;             // see SetWeights()
   std::vector<double> fit_weights_;         // of the inliers; 0 for the rest
   int num_inliers_ = 0;
+  bool judges_parallax_ = false;  // inlier_selection.h; at a minimum only
   double noise_px_ = 1.0;
   bool scale_free_ = true;
   int reference_match_ = -1;  // of the depth forms, grouped order
@@ -222,7 +242,9 @@ bool Refiner::SelectInliers(const Pose& pose) {
   previous_mask_ = mask_;
   const double gate =
       std::max(options_.threshold_px, kGateSigmas * options_.noise_px.value_or(0.0));
-  num_inliers_ = rigel::SelectInliers(matches_, pose, gate, &squared_errors_, &mask_);
+  num_inliers_ = judges_parallax_
+                     ? rigel::SelectInliers(matches_, pose, gate, &squared_errors_, &mask_)
+                     : matches_.SelectInliers(pose, gate, &squared_errors_, &mask_);
   return mask_ != previous_mask_;
 }
 
@@ -469,6 +491,9 @@ bool Refiner::SolveCeres(const MotionParameterization& parameterization,
   solver_options.function_tolerance = 1e-10;
   solver_options.parameter_tolerance = 1e-12;
   solver_options.gradient_tolerance = 1e-14;
+  // Undetermined points must not make a step fail: Ceres would log that.
+  solver_options.min_lm_diagonal = 1e-4;
+  solver_options.max_trust_region_radius = 1e6;
   ceres::Solver::Summary ceres_summary;
   ceres::Solve(solver_options, &problem, &ceres_summary);
 
@@ -587,6 +612,17 @@ RefineSummary Refiner::Run(Pose* pose) {
     Fail(Termination::kFailure, "the start is not finite");
     return summary_;
   }
+  constexpr double kMaxRotationDefect = 1e-6;
+  if (!((pose->R.transpose() * pose->R - Eigen::Matrix3d::Identity()).norm() <
+        kMaxRotationDefect) ||
+      !(pose->R.determinant() > 0)) {
+    Fail(Termination::kFailure, "the start's R is not a rotation");
+    return summary_;
+  }
+  if (options_.use_prior && !CanBeWeighed(prior_, options_.prior_kind, &error)) {
+    Fail(Termination::kFailure, error);
+    return summary_;
+  }
   summary_.num_rounds = 0;
   summary_.num_iterations = 0;
   Pose result = *pose;
@@ -611,6 +647,11 @@ RefineSummary Refiner::Run(Pose* pose) {
       ResolveSignAndScale(sign_subset_, options_.threshold_px, &result);
     }
     if (result.t != t) done = Iterate(&result);
+  }
+  // Are there inliers that fit by chance?
+  if (done) {
+    judges_parallax_ = true;
+    if (SelectInliers(result)) done = Iterate(&result);
   }
   // What is said of the scale must be said of the final motion.
   if (done && ScaleIsFree(result) != scale_free_) done = Iterate(&result);
@@ -641,6 +682,12 @@ const char* TerminationName(Termination termination) {
 
 bool RefineOptions::IsValid(std::string* error) const {
   const bool prior_exact = form == RefineForm::kPrior || form == RefineForm::kPriorDepths;
+  if (std::string(RefineFormName(form)) == "unknown" ||
+      std::string(ResidualName(residual)) == "unknown" ||
+      std::string(LossName(loss)) == "unknown") {
+    *error = "form, residual or loss is none of its enumeration";
+    return false;
+  }
   if (prior_exact && prior_kind == PriorKind::kNone) {
     *error = std::string("the form '") + RefineFormName(form) + "' needs a prior_kind";
     return false;
@@ -677,7 +724,7 @@ std::string RefineSummary::BriefReport() const {
 std::string RefineSummary::ObservabilityReport() const {
   char text[256];
   if (!rotation_observable && exceeds_chance) {
-    if (rotation_sigma >= 0) {
+    if (rotation_sigma >= 0 && RadToDeg(rotation_sigma) < 180) {
       std::snprintf(text, sizeof(text), "the standard deviation of the rotation is %.1f deg",
                     RadToDeg(rotation_sigma));
     } else {

@@ -128,7 +128,7 @@ SmallEngineSummary SmallEngine::Solve(const SmallEngineOptions& options,
       summary.converged = true;
       if (predicted > 0) {
         best += step;
-        at.cost -= predicted;
+        at.cost = std::max(0.0, at.cost - predicted);
       }
       break;
     }

@@ -34,7 +34,7 @@ DEFINE_string(
     "(the prior is exact), depths (a reference match is exact), prior-depths (both), bundle (full "
     "and the points: reprojection errors)");
 DEFINE_bool(fix_translation_norm, false,
-            "hold |t|: at the file's distance, with --prior=truth at the true one, else as found");
+            "hold |t| at the file's distance, with --prior=truth at the true one");
 DEFINE_bool(estimate_noise, false,
             "estimate the image noise from the residuals even where the file states it");
 DEFINE_string(residual, "sampson",
@@ -113,10 +113,15 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
     return wrong("loss", FLAGS_loss, "none, huber, cauchy, tukey or truncated");
   }
   if (!estimate.refine_motion &&
-      (FLAGS_fix_translation_norm || FLAGS_use_prior_in_refine || FLAGS_estimate_noise)) {
+      (FLAGS_fix_translation_norm || FLAGS_use_prior_in_refine || FLAGS_estimate_noise ||
+       FLAGS_loss != "cauchy" || FLAGS_residual != "sampson")) {
     *error =
-        "--fix_translation_norm, --use_prior_in_refine and --estimate_noise are of the refinement, "
-        "which --refine=none leaves out";
+        "--loss, --residual, --fix_translation_norm, --use_prior_in_refine and --estimate_noise "
+        "are of the refinement, which --refine=none leaves out";
+    return false;
+  }
+  if (estimate.refine.residual == ResidualKind::kAlgebraic && FLAGS_loss != "cauchy") {
+    *error = "--loss=" + FLAGS_loss + ": the algebraic residual is in metres and takes no loss";
     return false;
   }
   if (estimate.refine_motion && estimate.refine.form == RefineForm::kBundle &&

@@ -9,6 +9,7 @@
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/report.h"
 #include "rigel/problems/shard_report.h"
+#include "rigel/refine/solver_choice.h"
 #include "rigel/tools/estimation_flags.h"
 #include "rigel/tools/tool.h"
 
@@ -116,9 +117,9 @@ int Run() {
     return UsageError("--solvers=" + FLAGS_solvers + ": names no solver");
   }
   for (const std::string& name : options.solvers) {
-    if (FindSolver(name) == nullptr) {
+    if (!IsSolverName(name)) {
       return UsageError("--solvers: there is no solver '" + name + "'; expected some of " +
-                        SolverNames());
+                        SolverNamesWithAuto());
     }
     if (!CanRefine(options.estimate, name, &error)) return UsageError(error);
     if (std::count(options.solvers.begin(), options.solvers.end(), name) > 1) {

@@ -9,6 +9,7 @@
 #include "rigel/problems/g2o_file.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/report.h"
+#include "rigel/refine/solver_choice.h"
 #include "rigel/tools/estimation_flags.h"
 #include "rigel/tools/tool.h"
 
@@ -60,8 +61,8 @@ int Run() {
   if (!OptionsFromFlags(&options, &error)) return UsageError(error);
   EstimateOptions& estimate = options.estimate;
   estimate.solver = FLAGS_solver;
-  if (FindSolver(FLAGS_solver) == nullptr) {
-    return UsageError("--solver=" + FLAGS_solver + ": expected one of " + SolverNames());
+  if (!IsSolverName(FLAGS_solver)) {
+    return UsageError("--solver=" + FLAGS_solver + ": expected one of " + SolverNamesWithAuto());
   }
   if (!CanRefine(estimate, FLAGS_solver, &error)) return UsageError(error);
   if (!StdoutIsAskedForOnce(&error)) return UsageError(error);

@@ -59,8 +59,8 @@ TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
   ASSERT_EQ(report["pairs"].size(), 3u);
   for (const Json& pair : report["pairs"]) {
     EXPECT_THAT(Keys(pair), UnorderedElementsAre(
-                                "pair", "status", "matches", "inliers", "iterations", "time_ms",
-                                "raw", "refined", "median_residual_px", "noise_px",
+                                "pair", "status", "matches", "solver", "inliers", "iterations",
+                                "time_ms", "raw", "refined", "median_residual_px", "noise_px",
                                 "rotation_observable", "translation_observable", "scale_observable",
                                 "rotation_sd_deg", "translation_dir_sd_deg", "covariance",
                                 "relative_scale_sd", "weakest_direction"));
@@ -88,8 +88,8 @@ TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
 TEST_F(EstimateTest, WithoutRefinementOnlyTheRawMotion) {
   const std::string matches = Simulate("in", {"--pairs=1", "--inter_share=0.5"});
   const Json pair = OnlyPair({"--matches=" + matches, "--refine=none"});
-  EXPECT_THAT(Keys(pair), UnorderedElementsAre("pair", "status", "matches", "inliers", "iterations",
-                                               "time_ms", "raw"));
+  EXPECT_THAT(Keys(pair), UnorderedElementsAre("pair", "status", "matches", "solver", "inliers",
+                                               "iterations", "time_ms", "raw"));
   EXPECT_EQ(pair["status"], "ok");
 }
 
