@@ -33,8 +33,8 @@ std::string TimeP90Ms(const RansacBenchmarkRow& row) {
 
 std::string SpeedTable(const std::vector<RansacBenchmarkRow>& rows) {
   Table table(1);
-  table.AddHeader({"", "", "time", "[ms]", "of it", "iter-", "error", "[deg]", "/clean", "",
-                   "/bound", "", "suc-", ""});
+  table.AddHeader({"", "", "time", "[ms]", "of it", "iter-", "error", "[deg]", "clean", "", "bound",
+                   "", "suc-", ""});
   table.AddHeader({"solver", "form", "median", "spread", "refine", "tions", "rot.", "dir.", "rot.",
                    "dir.", "rot.", "dir.", "cess", "pairs"});
   for (const RansacBenchmarkRow& row : rows) {
@@ -71,7 +71,7 @@ std::string SuccessTable(const std::vector<RansacBenchmarkRow>& rows, RansacExpe
   column("error", "rot.");
   column("[deg]", "dir.");
   if (!ablation) {
-    column("/ bound", "rot.");
+    column("bound", "rot.");
     column("", "dir.");
   }
   if (moving) column("static", "[%]");

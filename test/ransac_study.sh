@@ -23,8 +23,8 @@ table() {
   echo "# RANSAC and refinement together"
   echo
   echo "One thread, $pairs pairs a row, random motion (planar for \`3pt\`), 1 degree, 0.5 px, exact priors. Times are the least of"
-  echo "three runs of a pair. Success: rotation error within three times the pair's own Cramer-Rao bound; /bound: RMS error over RMS"
-  echo "bound of the pairs that succeed; /clean: median error over that of the same pairs without outliers; missed: failed pairs that"
+  echo "three runs of a pair. Success: rotation error within three times the pair's own Cramer-Rao bound; bound: RMS error over RMS"
+  echo "bound of the pairs that succeed; clean: median error over that of the same pairs without outliers; missed: failed pairs that"
   echo "succeed if refined from the truth."
   echo
   echo "## Time: 626 matches, 30 percent outliers"

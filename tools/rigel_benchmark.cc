@@ -53,22 +53,17 @@ constexpr char kUsage[] =
     "\n"
     "  rigel_benchmark --ransac=speed|outliers|ablation|moving\n"
     "\n"
-    "RANSAC and refinement on one thread, in scenes of random motion (planar for planar solvers), "
-    "1 "
-    "degree,\n"
-    "0.5 px, exact priors. speed: 626 matches, 30 percent outliers. outliers: 300 inliers and 10 "
-    "to "
-    "80\n"
-    "percent outliers. ablation: parts of the estimator left out or added. moving: a car that "
-    "moves "
-    "by\n"
-    "itself. Times are the least of three runs of a pair; / clean: to the error from the inliers "
-    "alone;\n"
-    "/ bound: RMS error of the pairs that succeed to the RMS Cramer-Rao bound of their inliers; "
-    "success:\n"
-    "rotation within three bounds; missed: failed pairs that succeed if refined from the truth; "
-    "static:\n"
-    "the motion holds nine in ten of the static matches that the true one does.\n";
+    "RANSAC and refinement on one thread, in scenes of random motion (planar for planar solvers),\n"
+    "1 degree, 0.5 px, exact priors. speed: 626 matches, 30 percent outliers. outliers: 300 "
+    "inliers\n"
+    "and 10 to 80 percent outliers. ablation: parts of the estimator left out or added. moving: a\n"
+    "car that moves by itself. Times are the least of three runs of a pair; clean: to the error\n"
+    "from the inliers alone; bound: RMS error of the pairs that succeed to the RMS Cramer-Rao "
+    "bound\n"
+    "of their inliers; success: rotation within three bounds; missed: failed pairs that succeed "
+    "if\n"
+    "refined from the truth; static: the motion holds nine in ten of the static matches that the\n"
+    "true one does.\n";
 
 // The first of these flags that was given; empty if none was.
 std::string FirstGiven(const std::vector<std::string>& flags) {
