@@ -2,8 +2,14 @@
 
 #ifdef RIGEL_WITH_OPENGV
 
+#include <chrono>
+#include <cmath>
+#include <memory>
+
 #include <opengv/relative_pose/NoncentralRelativeAdapter.hpp>
 #include <opengv/relative_pose/methods.hpp>
+#include <opengv/sac/Ransac.hpp>
+#include <opengv/sac_problems/relative_pose/NoncentralRelativePoseSacProblem.hpp>
 #endif
 
 namespace rigel {
@@ -80,8 +86,48 @@ bool RefineWithOpenGv(const GroupedMatches& matches, Pose* pose) {
   pose->t = -pose->R * T.col(3);
   return pose->AllFinite();
 }
+
+bool EstimateWithOpenGv(const std::string& peer, const RansacOptions& options,
+                        const FramePair& pair, OpenGvEstimate* estimate) {
+  using Problem = opengv::sac_problems::relative_pose::NoncentralRelativePoseSacProblem;
+  using Clock = std::chrono::steady_clock;
+  const auto milliseconds = [](Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double, std::milli>(to - from).count();
+  };
+  const bool sixpt = peer == "opengv-sixpt";
+  if (!sixpt && peer != "opengv-seventeenpt") return false;
+  const auto start = Clock::now();
+  const OpenGvSample data(GroupedMatches(pair.rig, pair.matches));
+  opengv::relative_pose::NoncentralRelativeAdapter adapter(
+      data.bearings1, data.bearings2, data.cameras1, data.cameras2, data.offsets, data.rotations);
+  opengv::sac::Ransac<Problem> ransac;
+  ransac.sac_model_ = std::make_shared<Problem>(
+      adapter, sixpt ? Problem::SIXPT : Problem::SEVENTEENPT, /*asCentral=*/false,
+      /*randomSeed=*/false);
+  // Its error is the sum over both views of 1 - cos of the angle.
+  ransac.threshold_ = 1.0 - std::cos(options.threshold_px / pair.rig.cameras[0].intrinsics.fx);
+  ransac.max_iterations_ = options.max_iterations;
+  ransac.probability_ = options.confidence;
+  if (!ransac.computeModel()) return false;
+  const auto found = Clock::now();
+  opengv::transformation_t T = ransac.model_coefficients_;
+  ransac.sac_model_->optimizeModelCoefficients(ransac.inliers_, ransac.model_coefficients_, T);
+  const auto refined = Clock::now();
+  // f1_from_f2.
+  estimate->pose.R = T.leftCols<3>().transpose();
+  estimate->pose.t = -estimate->pose.R * T.col(3);
+  estimate->num_inliers = static_cast<int>(ransac.inliers_.size());
+  estimate->iterations = ransac.iterations_;
+  estimate->ransac_ms = milliseconds(start, found);
+  estimate->refine_ms = milliseconds(found, refined);
+  return estimate->pose.AllFinite();
+}
 #else
 bool RefineWithOpenGv(const GroupedMatches& /*matches*/, Pose* /*pose*/) { return false; }
+bool EstimateWithOpenGv(const std::string& /*peer*/, const RansacOptions& /*options*/,
+                        const FramePair& /*pair*/, OpenGvEstimate* /*estimate*/) {
+  return false;
+}
 #endif
 
 const std::vector<SolverInfo>& OpenGvPeers() {

@@ -1,5 +1,6 @@
 #include "rigel/problems/synthetic.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "rigel/core/angles.h"
@@ -11,6 +12,8 @@ namespace {
 // Draws of a point before giving up: a motion that leaves fewer than one point in a thousand in
 // view is out of view.
 constexpr int kMaxDraws = 1000;
+
+constexpr double kRatioTest = 0.8;  // no match has a larger score
 
 Rig MakeRig(int num_cameras, Random* random) {
   const Eigen::Vector3d positions[4] = {
@@ -55,6 +58,74 @@ bool DrawMatch(const SceneOptions& options, const Rig& rig, const Pose& truth, b
   return false;
 }
 
+// A box on the ground in the frame of view 1 and its motion between the frames.
+struct Car {
+  Eigen::Matrix3d axes;  // lengthwise, across, down
+  Eigen::Vector3d centre;
+  Pose motion;  // of its points
+};
+
+Car DrawCar(const Eigen::Vector3d& down, Random* random) {
+  Car car;
+  const Eigen::Vector3d ahead =
+      (Eigen::Vector3d::UnitZ() - down.z() * down).normalized();  // a camera looks along z
+  const Eigen::Vector3d right = down.cross(ahead);
+  const auto horizontal = [&](double angle) -> Eigen::Vector3d {
+    return std::cos(angle) * ahead + std::sin(angle) * right;
+  };
+  const double distance = random->Uniform(5.0, 15.0);
+  const double bearing = random->Uniform(-0.4, 0.4);
+  // Cameras are a metre and a half above the ground, the box's centre half as much.
+  car.centre = distance * horizontal(bearing) + 0.75 * down;
+  const Eigen::Vector3d length = horizontal(random->Uniform(0.0, 2.0 * kPi));
+  car.axes << length, down.cross(length), down;
+  const double way = random->Uniform(0.5, 2.0);
+  const Eigen::Vector3d shift = way * horizontal(random->Uniform(0.0, 2.0 * kPi));
+  car.motion.R = ExpSO3(DegToRad(random->Uniform(-3.0, 3.0)) * down);
+  car.motion.t = car.centre + shift - car.motion.R * car.centre;
+  return car;
+}
+
+// A point of the car that both cameras of the match see.
+bool DrawCarMatch(const Car& car, const Rig& rig, const Pose& truth, Random* random, Match* match) {
+  const RigCamera& camera1 = rig.cameras[match->camera1];
+  const RigCamera& camera2 = rig.cameras[match->camera2];
+  const Pose motion = truth * car.motion;
+  for (int draw = 0; draw < kMaxDraws; ++draw) {
+    const double x = random->Uniform(-2.25, 2.25);
+    const double y = random->Uniform(-0.9, 0.9);
+    const double z = random->Uniform(-0.75, 0.75);
+    const Eigen::Vector3d X = car.centre + car.axes * Eigen::Vector3d(x, y, z);
+    const Eigen::Vector3d X1 = camera1.Q.transpose() * (X - camera1.s);
+    const Eigen::Vector3d X2 = camera2.Q.transpose() * (motion * X - camera2.s);
+    if (!(X1.z() > 0.1) || !(X2.z() > 0.1)) continue;
+    match->pixel1 = camera1.intrinsics.Project(X1);
+    match->pixel2 = camera2.intrinsics.Project(X2);
+    if (camera1.intrinsics.InImage(match->pixel1) && camera2.intrinsics.InImage(match->pixel2)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Moves the given matches to a car. False if none was found that all their cameras see.
+bool MoveToCar(const SceneOptions& options, const FramePair& pair, const int* chosen, int size,
+               Random* random, std::vector<Match>* matches) {
+  constexpr int kMaxCars = 100;
+  for (int attempt = 0; attempt < kMaxCars; ++attempt) {
+    const Car car = DrawCar(*pair.prior.gravity1, random);
+    bool seen = true;
+    for (int k = 0; k < size && seen; ++k) {
+      Match& match = (*matches)[chosen[k]];
+      seen = DrawCarMatch(car, pair.rig, *pair.truth, random, &match);
+      match.pixel1 += Noise(options.noise_px, random);
+      match.pixel2 += Noise(options.noise_px, random);
+    }
+    if (seen) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool ParseMotionPattern(std::string_view name, MotionPattern* pattern) {
@@ -95,6 +166,8 @@ bool SceneOptions::IsValid(std::string* error) const {
     *error = "rotation_deg must be finite";
   } else if (!in_unit(inter_share) || !in_unit(outlier_share)) {
     *error = "inter_share and outlier_share must lie in [0, 1]";
+  } else if (!(moving_share >= 0.0) || !(moving_share + outlier_share <= 1.0)) {
+    *error = "moving_share must not be negative, nor above 1 together with outlier_share";
   } else if (inter_share > 0.0 && num_cameras < 2) {
     *error = "inter_share needs two cameras";
   } else if (motion == MotionPattern::kPlanar && rotation_axis != RotationAxisPattern::kY) {
@@ -176,6 +249,24 @@ bool MakeScenePair(const SceneOptions& options, int index, const Pose& truth, Fr
     const double u = random.Uniform(0.0, camera.width);
     const double v = random.Uniform(0.0, camera.height);
     match.pixel2 = {u, v};
+  }
+  // After all else, so that the rest of a pair is the same with and without them.
+  const int num_moving =
+      std::min(static_cast<int>(std::lround(options.moving_share * options.num_matches)),
+               options.num_matches - num_outliers);
+  for (int k = num_outliers; k < num_outliers + num_moving; ++k) {
+    std::swap(order[k], order[k + random.Index(options.num_matches - k)]);
+  }
+  if (num_moving > 0 && !MoveToCar(options, result, order.data() + num_outliers, num_moving,
+                                   &random, &result.matches)) {
+    *error = "hardly any point of a car in front of the rig is in view of its cameras";
+    return false;
+  }
+  for (int k = 0; options.match_scores && k < options.num_matches; ++k) {
+    const double a = random.Uniform();
+    const double b = random.Uniform();
+    result.matches[order[k]].score =
+        kRatioTest * (k < num_outliers ? std::pow(a, 1.0 / 11.0) : 0.5 * (a + b));
   }
   *pair = result;
   return true;

@@ -31,6 +31,10 @@ DEFINE_string(motion, "forward",
               "direction of translation: forward, random, sideways or planar; |t| is 1 m");
 DEFINE_double(inter_share, 0, "share of the matches between different cameras");
 DEFINE_double(outlier_share, 0, "share of the matches whose second point is anywhere in the image");
+DEFINE_double(moving_share, 0,
+              "share of the matches on a car that moves by itself, 0.5 to 2 m; not outliers");
+DEFINE_bool(match_scores, false,
+            "write scores as Lowe's ratios, lower for true matches than for outliers; else 0");
 DEFINE_uint64(seed, 1, "the same seed makes the same files");
 DEFINE_string(poses, "",
               "directory of KITTI odometry poses (00.txt, ...): one pair for each two consecutive "
@@ -51,6 +55,11 @@ constexpr char kUsage[] =
     "them;\n"
     "points uniform in the image of view 1, 5 to 30 m away. The files hold the truth, the noise\n"
     "and the exact gravity, axis and (planar motion) normal.\n"
+    "\n"
+    "  rigel_simulate --output=DIR --motion=random --moving_share=0.3\n"
+    "\n"
+    "With a car, a box 5 to 15 m in front of the rig, that moves over the ground and turns by up\n"
+    "to 3 degrees between the frames: matches that agree on a motion which is not the rig's.\n"
     "\n"
     "  rigel_simulate --output=DIR --poses=KITTI/poses --num_matches=300\n"
     "\n"
@@ -135,6 +144,8 @@ int Run() {
   options.rotation_deg = FLAGS_rotation_deg;
   options.inter_share = FLAGS_inter_share;
   options.outlier_share = FLAGS_outlier_share;
+  options.moving_share = FLAGS_moving_share;
+  options.match_scores = FLAGS_match_scores;
   options.seed = FLAGS_seed;
   if (!options.IsValid(&error)) return UsageError("--" + error);
   if (FLAGS_every < 1) return UsageError("--every: expected at least 1");

@@ -13,6 +13,7 @@
 #include "rigel/core/cheirality.h"
 #include "rigel/core/epipolar.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/refine/estimate_motion.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -273,6 +274,101 @@ TEST(Synthetic, InvalidOptionsAreRefusedWithTheirName) {
       "planar");
   // Half a turn: what was ahead is behind.
   expect_invalid([](SceneOptions* o) { o->rotation_deg = 180.0; }, "view of camera");
+}
+
+TEST(Synthetic, TheCarsMatchesAgreeOnAMotionOfTheirOwn) {
+  SceneOptions options;
+  options.noise_px = 0.0;
+  options.motion = MotionPattern::kRandom;
+  for (int index = 0; index < 20; ++index) {
+    options.moving_share = 0.0;
+    const FramePair still = ScenePair(options, index);
+    options.moving_share = 0.3;
+    const FramePair pair = ScenePair(options, index);
+    EXPECT_EQ(pair.truth->R, still.truth->R);
+    EXPECT_EQ(pair.truth->t, still.truth->t);
+    std::vector<Match> moving;
+    for (size_t k = 0; k < pair.matches.size(); ++k) {
+      const Match& m = pair.matches[k];
+      EXPECT_EQ(m.camera1, still.matches[k].camera1);
+      EXPECT_TRUE(pair.rig.cameras[m.camera1].intrinsics.InImage(m.pixel1));
+      EXPECT_TRUE(pair.rig.cameras[m.camera2].intrinsics.InImage(m.pixel2));
+      if (m.pixel1 != still.matches[k].pixel1) moving.push_back(m);
+      // The others are untouched.
+      else
+        EXPECT_EQ(m.pixel2, still.matches[k].pixel2);
+    }
+    ASSERT_EQ(moving.size(), 60u);
+    // Compact: within a window, not all over the image.
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    int first_camera = 0;
+    for (const Match& m : moving) {
+      if (m.camera1 != 0) continue;
+      mean += m.pixel1;
+      ++first_camera;
+    }
+    mean /= first_camera;
+    double spread = 0.0;
+    for (const Match& m : moving) {
+      if (m.camera1 == 0) spread += (m.pixel1 - mean).squaredNorm() / first_camera;
+    }
+    EXPECT_LT(std::sqrt(spread), 160.0);
+    // Alone they give a motion that holds them all, turns about the vertical and is not the rig's.
+    FramePair car = pair;
+    car.matches = moving;
+    EstimateOptions estimate;
+    estimate.solver = "4pt";
+    estimate.ransac.threshold_px = 0.1;
+    const MotionEstimate own = EstimateMotion(estimate, car);
+    ASSERT_TRUE(own.HasMotion()) << own.message;
+    EXPECT_EQ(own.num_inliers, 60);
+    EXPECT_LT(own.refine.median_residual_px, 1e-4);
+    double off = 0.0;
+    for (const Match& m : moving) {
+      off = std::max(off, std::abs(GecTripleProduct(*pair.truth, MakeRayPair(pair.rig, m))));
+    }
+    EXPECT_GT(off, 1e-3);
+  }
+}
+
+TEST(Synthetic, SharesOfOutliersAndCarAddUp) {
+  SceneOptions options;
+  std::string error;
+  options.outlier_share = 0.6;
+  options.moving_share = 0.5;
+  EXPECT_FALSE(options.IsValid(&error));
+  EXPECT_THAT(error, HasSubstr("moving_share"));
+  options.moving_share = -0.1;
+  EXPECT_FALSE(options.IsValid(&error));
+  options.moving_share = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(options.IsValid(&error));
+  options.moving_share = 0.4;
+  EXPECT_TRUE(options.IsValid(&error));
+  options.num_matches = 5;  // both shares are rounded up
+  options.outlier_share = options.moving_share = 0.5;
+  EXPECT_EQ(ScenePair(options, 0).matches.size(), 5u);
+}
+
+TEST(Synthetic, ScoresOfTrueMatchesAreLowerAndChangeNothingElse) {
+  SceneOptions options;
+  options.num_matches = 1000;
+  options.outlier_share = 0.5;
+  const FramePair plain = ScenePair(options, 0);
+  options.match_scores = true;
+  const FramePair scored = ScenePair(options, 0);
+  options.outlier_share = 0.0;
+  const FramePair clean = ScenePair(options, 0);
+  double good = 0.0, bad = 0.0;
+  for (size_t k = 0; k < scored.matches.size(); ++k) {
+    const Match& m = scored.matches[k];
+    EXPECT_EQ(plain.matches[k].score, 0.0);
+    EXPECT_EQ(plain.matches[k].pixel2, m.pixel2);
+    EXPECT_GT(m.score, 0.0);
+    EXPECT_LE(m.score, 0.8);
+    (m.pixel2 == clean.matches[k].pixel2 ? good : bad) += m.score / 500.0;
+  }
+  EXPECT_NEAR(good, 0.4, 0.03);
+  EXPECT_NEAR(bad, 0.8 * 11.0 / 12.0, 0.03);
 }
 
 }  // namespace

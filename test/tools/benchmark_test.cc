@@ -118,5 +118,71 @@ TEST(BenchmarkTest, NoProblemInViewIsAFailureAndNoRowOfZeros) {
   EXPECT_THAT(run.out, IsEmpty());
 }
 
+TEST(BenchmarkTest, RansacExperimentsAreTablesOfAHundredColumns) {
+  for (const char* experiment : {"speed", "outliers", "ablation", "moving"}) {
+    const Outcome run = RunTool("benchmark", {"--ransac=" + std::string(experiment), "--pairs=1",
+                                              "--solvers=4pt-axis-approx"});
+    EXPECT_EXIT_CODE(run, 0);
+    EXPECT_LE(Width(run.out), 100u) << run.out;
+    EXPECT_THAT(run.out, HasSubstr("4pt-axis-approx"));
+    EXPECT_THAT(run.out, Not(HasSubstr("nan")));
+  }
+}
+
+TEST(BenchmarkTest, RansacReportIsDeterministicButForTimes) {
+  const Args args = {"--ransac=moving", "--pairs=2", "--solvers=4pt-approx"};
+  const Json report = WithoutTimes(Benchmark(args));
+  EXPECT_EQ(report["format"], "rigel-ransac-benchmark 1");
+  EXPECT_EQ(report["experiment"], "moving");
+  for (const Json& row : report["results"]) {
+    EXPECT_THAT(Keys(row), IsSupersetOf({"solver", "form", "matches", "pairs", "failures",
+                                         "rotation_deg", "success", "missed", "static_wins"}));
+  }
+  EXPECT_EQ(report, WithoutTimes(Benchmark(args)));
+  EXPECT_NE(report["results"], WithoutTimes(Benchmark(args + Args{"--seed=2"}))["results"]);
+}
+
+TEST(BenchmarkTest, RansacRunsOnMatchFiles) {
+  const std::string directory = testing::TempDir() + "/rigel_benchmark_ransac";
+  ASSERT_EXIT_CODE(RunTool("simulate", {"--output=" + directory, "--pairs=2", "--motion=planar"}),
+                   0);
+  const Json report = Benchmark({"--ransac=speed", "--matches=" + directory, "--solvers=3pt"});
+  EXPECT_EQ(report["experiment"], "files");
+  ASSERT_EQ(report["results"].size(), 1u);
+  EXPECT_EQ(report["results"][0]["pairs"], 2);
+  EXPECT_EQ(report["results"][0]["matches"], 200);
+  EXPECT_GE(report["results"][0]["success"], 0.5);
+  const Outcome none = RunTool("benchmark", {"--ransac=speed", "--matches=" + directory + "/none"});
+  EXPECT_EXIT_CODE(none, 1);
+  EXPECT_THAT(none.err, HasSubstr("/none"));
+}
+
+TEST(BenchmarkTest, RansacRefusesFlagsThatHaveNoEffect) {
+  const std::pair<Args, const char*> wrong[] = {
+      {{"--ransac=fast"}, "--ransac=fast"},
+      {{"--ransac="}, "--ransac="},
+      {{"--ransac=speed", "--trials=5"}, "--trials"},
+      {{"--ransac=speed", "--refine"}, "--refine"},
+      {{"--ransac=speed", "--rotation_deg=2"}, "--rotation_deg"},
+      {{"--ransac=speed", "--num_cameras=3"}, "--num_cameras"},
+      {{"--ransac=speed", "--random_axis"}, "--random_axis"},
+      {{"--ransac=speed", "--pairs=0"}, "--pairs"},
+      {{"--ransac=speed", "--solvers=7pt"}, "'7pt'"},
+      {{"--ransac=speed", "--prior=body"}, "--prior"},
+      {{"--ransac=speed", "--matches=x", "--prior=none"}, "--prior=none"},
+      {{"--ransac=speed", "--matches=x", "--pairs=5"}, "--pairs"},
+      {{"--ransac=outliers", "--matches=x"}, "--matches"},
+      {{"--matches=x"}, "--matches"},
+      {{"--pairs=5"}, "--pairs"},
+      {{"--prior=body"}, "--prior"},
+  };
+  for (const auto& [args, what] : wrong) {
+    const Outcome run = RunTool("benchmark", args);
+    EXPECT_EXIT_CODE(run, 2);
+    EXPECT_THAT(run.err, HasSubstr(what));
+    EXPECT_THAT(run.out, IsEmpty());
+  }
+}
+
 }  // namespace
 }  // namespace rigel

@@ -111,6 +111,20 @@ TEST_F(SimulateTest, SharesAreExact) {
                    0);
 }
 
+TEST_F(SimulateTest, CarsAndScoresAreWrittenWhereAskedFor) {
+  const std::vector<FramePair> still = ReadAll(Simulate("still", {"--pairs=1"}));
+  const std::vector<FramePair> moving =
+      ReadAll(Simulate("moving", {"--pairs=1", "--moving_share=0.3", "--match_scores"}));
+  ASSERT_EQ(moving.size(), 1u);
+  int moved = 0;
+  for (size_t k = 0; k < moving[0].matches.size(); ++k) {
+    moved += moving[0].matches[k].pixel1 != still[0].matches[k].pixel1 ? 1 : 0;
+    EXPECT_EQ(still[0].matches[k].score, 0.0);
+    EXPECT_GT(moving[0].matches[k].score, 0.0);
+  }
+  EXPECT_EQ(moved, 60);
+}
+
 TEST_F(SimulateTest, NoMatchesAreAFileToo) {
   const std::vector<FramePair> pairs = ReadAll(Simulate("none", {"--num_matches=0", "--pairs=1"}));
   ASSERT_EQ(pairs.size(), 1u);
@@ -123,6 +137,8 @@ TEST_F(SimulateTest, WrongValuesAreUsageErrorsAndLeaveNothing) {
       {"--inter_share=-0.1", "inter_share"},
       {"--outlier_share=2", "outlier_share"},
       {"--outlier_share=nan", "outlier_share"},
+      {"--moving_share=1.1", "moving_share"},
+      {"--moving_share=-0.1", "moving_share"},
       {"--noise_px=-1", "noise_px"},
       {"--noise_px=inf", "noise_px"},
       {"--rotation_deg=nan", "rotation_deg"},
