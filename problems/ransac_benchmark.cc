@@ -269,6 +269,10 @@ const std::vector<Variant>& Variants() {
       {"no LO, no finalists", [](EstimateOptions* o) { o->ransac.local_optimization = false; }},
       {"no finalists", [](EstimateOptions* o) { o->ransac.num_finalists = 0; }},
       {"min_iterations 1", [](EstimateOptions* o) { o->ransac.min_iterations = 1; }},
+      {"no PROSAC", [](EstimateOptions* o) { o->ransac.prosac = false; }},
+      {"no early termination", [](EstimateOptions* o) { o->ransac.early_termination = false; }},
+      {"MAGSAC++", [](EstimateOptions* o) { o->ransac.score = ScoreKind::kMagsac; }},
+      {"spread samples", [](EstimateOptions* o) { o->ransac.spread_samples = true; }},
   };
   return variants;
 }

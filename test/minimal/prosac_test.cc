@@ -76,7 +76,9 @@ TEST(Prosac, DrawsFromThePoolWhichGrowsToAllMatches) {
       ASSERT_TRUE(prosac.Draw(&random, sample));
       EXPECT_GE(prosac.pool_size(), last_pool);
       last_pool = prosac.pool_size();
-      if (k == 0) EXPECT_LE(last_pool, 25);
+      if (k == 0) {
+        EXPECT_LE(last_pool, 25);
+      }
       for (const int i : sample) EXPECT_LT(rank[i], last_pool) << "draw " << k;
       EXPECT_EQ(std::set<int>(sample, sample + 4).size(), 4u);
       drawn.insert(sample, sample + 4);
@@ -84,7 +86,9 @@ TEST(Prosac, DrawsFromThePoolWhichGrowsToAllMatches) {
         const Match& m = matches.matches()[i];
         return 2 * m.camera1 + m.camera2;
       };
-      if (kind == SampleKind::kSpread) EXPECT_NE(group(sample[0]), group(sample[1]));
+      if (kind == SampleKind::kSpread) {
+        EXPECT_NE(group(sample[0]), group(sample[1]));
+      }
       if (kind == SampleKind::kOneCamera) {
         for (const int i : sample) EXPECT_EQ(group(i), group(sample[0]));
         EXPECT_TRUE(matches.matches()[sample[0]].IsIntra());
