@@ -84,12 +84,14 @@ class FramePairSolver {
 
   // In two steps, at the loose threshold and at the threshold.
   bool OptimizeLoosely(Model* model) const {
+    ResolveSignAndMaybeScale(kLooseFactor * threshold_px_, model);
     return OptimizeOn(subset_, &loose_engine_, kLooseFactor * threshold_px_, model) &&
            OptimizeOn(optimized_, &engine_, threshold_px_, model) && Admit(model);
   }
 
   bool LocalOptimize(Model* model) const {
     Model optimized = *model;
+    ResolveSignAndMaybeScale(threshold_px_, &optimized);
     if (!OptimizeOn(optimized_, &engine_, threshold_px_, &optimized) || !Admit(&optimized)) {
       return false;
     }
@@ -123,16 +125,22 @@ class FramePairSolver {
     return true;
   }
 
-  bool OptimizeOn(const GroupedMatches& matches, SmallEngine* engine, double threshold,
-                  Model* model) const {
-    SmallEngineOptions options;
-    options.loss_scale = threshold;
-    options.inverse_scale = intra_only_ || !model->has_scale;
-    if (options.inverse_scale) {
+  // Such matches and a minimal sample hardly determine |t|.
+  bool ScaleIsNoise(const Model& model) const { return intra_only_ || !model.has_scale; }
+
+  void ResolveSignAndMaybeScale(double threshold, Model* model) const {
+    if (ScaleIsNoise(*model)) {
       ResolveSignAndScale(sign_subset_, threshold, model);
     } else {
       ResolveSign(sign_subset_, threshold, model);
     }
+  }
+
+  bool OptimizeOn(const GroupedMatches& matches, SmallEngine* engine, double threshold,
+                  Model* model) const {
+    SmallEngineOptions options;
+    options.loss_scale = threshold;
+    options.inverse_scale = ScaleIsNoise(*model);
     matches.SelectInliers(*model, threshold, &squared_errors_, &inliers_);
     return engine->Minimize(options, inliers_, model);
   }
@@ -152,7 +160,7 @@ class FramePairSolver {
   double threshold_px_;
   mutable std::vector<double> squared_errors_;
   mutable std::vector<char> inliers_;
-  bool intra_only_ = true;  // such matches hardly determine the scale
+  bool intra_only_ = true;
 };
 
 double MillisecondsSince(std::chrono::steady_clock::time_point start) {

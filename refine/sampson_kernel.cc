@@ -6,6 +6,7 @@
 namespace rigel {
 namespace {
 
+// Long enough for g++ to keep the loops, which it vectorizes; half of it is unrolled into scalars.
 constexpr int kBlock = 64;
 constexpr int kLanes = 8;
 constexpr int kRows = 10;  // de/dF and the residual

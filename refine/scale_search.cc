@@ -1,6 +1,7 @@
 #include "rigel/refine/scale_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -23,6 +24,8 @@ constexpr size_t kSubset = 200;
 constexpr size_t kCoarseSubset = 100;
 // So many lengths are followed to their minima.
 constexpr size_t kPolished = 3;
+// And of these only with a score that so large a share of outliers makes.
+constexpr double kInReach = 0.1;
 
 struct Candidate {
   double length = 0.0;  // the start's
@@ -84,7 +87,13 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
 
   // From each length loosely, then from the best few of these and from the longest in full.
   std::vector<Candidate> candidates;
-  for (const double from : lengths) {
+  const auto polish = [&](Candidate* candidate) {
+    for (int pass = 0; pass < 2; ++pass) {
+      if (!optimize(subset, &engine, threshold_px, &candidate->motion)) break;
+    }
+    candidate->score = score_of(subset, candidate->motion);
+  };
+  const auto from_length = [&](double from) {
     Candidate candidate;
     candidate.length = from;
     candidate.motion = *pose;
@@ -92,24 +101,31 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
     ResolveSign(coarse, kLooseFactor * threshold_px, &candidate.motion);
     optimize(coarse, &coarse_engine, kLooseFactor * threshold_px, &candidate.motion);
     candidate.score = score_of(subset, candidate.motion);
-    candidates.push_back(candidate);
+    return candidate;
+  };
+  const double outlier = threshold_px * threshold_px;
+  const double start_score = score_of(subset, *pose);
+  Candidate longest = from_length(lengths.back());
+  polish(&longest);
+  // Where one without arms and a start that has them fit alike, the arms tell nothing.
+  const bool within = lengths.size() > 1 && norm <= lengths[lengths.size() - 2];
+  if (!within || std::abs(start_score - longest.score) >= outlier) {
+    for (size_t k = 0; k + 1 < lengths.size(); ++k) candidates.push_back(from_length(lengths[k]));
   }
   const auto by_score = [](const Candidate& x, const Candidate& y) { return x.score < y.score; };
-  std::stable_sort(candidates.begin(), candidates.end() - 1, by_score);
-  if (candidates.size() > kPolished + 1) {
-    candidates.erase(candidates.begin() + kPolished, candidates.end() - 1);
+  std::stable_sort(candidates.begin(), candidates.end(), by_score);
+  size_t kept = 0;
+  while (kept < std::min(kPolished, candidates.size()) &&
+         candidates[kept].score <= candidates[0].score + kInReach * outlier * subset.size()) {
+    ++kept;
   }
-  for (Candidate& candidate : candidates) {
-    for (int pass = 0; pass < 2; ++pass) {
-      if (!optimize(subset, &engine, threshold_px, &candidate.motion)) break;
-    }
-    candidate.score = score_of(subset, candidate.motion);
-  }
+  candidates.resize(kept);
+  for (Candidate& candidate : candidates) polish(&candidate);
+  candidates.push_back(longest);
   // The start takes its place among the lengths; longest first.
-  candidates.push_back({norm, score_of(subset, *pose), *pose});
+  candidates.push_back({norm, start_score, *pose});
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& x, const Candidate& y) { return x.length > y.length; });
-  const double outlier = threshold_px * threshold_px;
   double best = std::numeric_limits<double>::infinity();
   Pose found = *pose;
   for (const Candidate& candidate : candidates) {
