@@ -19,6 +19,7 @@
 #include "rigel/minimal/ransac.h"
 #include "rigel/minimal/sampler.h"
 #include "rigel/problems/synthetic.h"
+#include "rigel/refine/estimate_motion.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define RIGEL_COUNT_MALLOC 0
@@ -280,6 +281,32 @@ TEST(Allocation, RansacLoopMakesNone) {
   EXPECT_TRUE(result.found);
   EXPECT_GE(result.num_inliers, 140) << "of 160";
   EXPECT_GE(result.iterations, options.min_iterations);
+}
+
+// The whole estimate, local optimization and PROSAC included: a longer loop allocates no more.
+TEST(Allocation, TheLoopOfAnEstimateMakesNone) {
+  for (const char* solver : {"4pt-approx", "5pt+1"}) {
+    FramePair pair = MakePair(FindSolver(solver), true, 300);
+    Random random(5);
+    for (size_t k = 0; k < pair.matches.size(); ++k) {
+      pair.matches[k].score = random.Uniform();
+      // Outliers, so that better hypotheses keep coming.
+      if (k % 2 == 0) pair.matches[k].pixel2.x() += random.Uniform(-100, 100);
+    }
+    const auto count = [&](int iterations) {
+      EstimateOptions options;
+      options.solver = solver;
+      options.refine_motion = false;
+      options.ransac.min_iterations = 50;
+      options.ransac.max_iterations = iterations;
+      options.ransac.confidence = 1.0 - 1e-15;
+      MotionEstimate estimate;
+      const auto allocations = Allocations([&] { estimate = EstimateMotion(options, pair); });
+      EXPECT_EQ(estimate.iterations, iterations);
+      return allocations;
+    };
+    EXPECT_EQ(count(100), count(200)) << solver;
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "rigel/refine/estimate_motion.h"
 
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -271,6 +272,31 @@ TEST(EstimateMotion, TheSignOfTIsRightUnderAPoorPrior) {
   }
   std::printf("[ measured ] wrong signs of 200: refined %d, raw %d\n", count, count_raw);
   EXPECT_LE(count, 2);
+}
+
+// What the seed leaves in the refined motion, in units of its stated standard deviations.
+TEST(EstimateMotion, AnotherSeedHardlyChangesTheRefinedMotion) {
+  int near = 0;
+  constexpr int kPairs = 200;
+  for (int index = 0; index < kPairs; ++index) {
+    SceneOptions scene;
+    scene.num_matches = 626;
+    scene.outlier_share = 0.3;
+    scene.motion = MotionPattern::kRandom;
+    const FramePair pair = ScenePair(scene, index);
+    EstimateOptions options;
+    options.solver = "4pt-approx";
+    options.refine.noise_px = scene.noise_px;
+    const MotionEstimate one = EstimateMotion(options, pair);
+    options.ransac.seed = 2;
+    const MotionEstimate other = EstimateMotion(options, pair);
+    ASSERT_EQ(one.status, EstimateStatus::kSuccess);
+    ASSERT_EQ(other.status, EstimateStatus::kSuccess);
+    near += RotationError(one.pose.R, other.pose.R) < 0.5 * one.refine.rotation_sigma &&
+            TranslationDirectionError(one.pose.t, other.pose.t) < 0.5 * one.refine.direction_sigma;
+  }
+  std::printf("[ measured ] within half a standard deviation: %d of %d\n", near, kPairs);
+  EXPECT_GE(near, kPairs * 9 / 10);
 }
 
 }  // namespace
