@@ -77,8 +77,9 @@ class Problem {
   double Error(int k) const {
     return SampsonError(F, {data_[0][k], data_[1][k], 1}, {data_[2][k], data_[3][k], 1});
   }
+  Cheirality Side(int k, double min_sin) const { return TestCheirality(pose, rays_[k], min_sin); }
   bool Behind(int k, double min_sin) const {
-    const Cheirality c = TestCheirality(pose, rays_[k], min_sin);
+    const Cheirality c = Side(k, min_sin);
     return c == Cheirality::kBehind || c == Cheirality::kMixed;
   }
 
@@ -346,6 +347,36 @@ TEST(ScoreKernel, AParallaxAtTheLimitIsUndecided) {
     EXPECT_FALSE(LeftOut(p, 0.25, path)[0]);
     EXPECT_TRUE(LeftOut(p, std::nextafter(0.25, 0.0), path)[0]);
   }
+}
+
+TEST(ScoreKernel, DepthsAreCountedAsTestCheiralityJudgesThem) {
+  constexpr double kMinSin = 0.02;
+  int behind = 0, mixed = 0, undecided = 0;
+  for (int size = 0; size < 70; ++size) {
+    const Problem p(size, 300 + size);
+    DepthCounts expected;
+    for (int k = 0; k < size; ++k) {
+      if (!(p.Error(k) * p.Error(k) < kT2)) continue;
+      const Cheirality side = p.Side(k, kMinSin);
+      expected.in_front += side == Cheirality::kInFront;
+      expected.behind += side == Cheirality::kBehind;
+      expected.decided += side != Cheirality::kUndecided;
+      mixed += side == Cheirality::kMixed;
+      undecided += side == Cheirality::kUndecided;
+    }
+    behind += expected.behind;
+    for (const CpuPath path : kPaths) {
+      DepthCounts counts;
+      CountDepths(p.pixels(), p.rays(), p.F.data(), p.motion(kMinSin * kMinSin), kT2, &counts,
+                  path);
+      EXPECT_EQ(counts.in_front, expected.in_front) << size;
+      EXPECT_EQ(counts.behind, expected.behind) << size;
+      EXPECT_EQ(counts.decided, expected.decided) << size;
+    }
+  }
+  // All kinds occurred.
+  EXPECT_GT(behind + mixed, 0);
+  EXPECT_GT(undecided, 0);
 }
 
 }  // namespace
