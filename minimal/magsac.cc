@@ -5,8 +5,7 @@
 namespace rigel {
 namespace {
 
-// Incomplete gamma functions of half-integer arguments by the error function: lower (1, x) and
-// upper (0, x).
+// Incomplete gamma functions: lower (1, x) and upper (0, x).
 double LowerGamma1(double x) { return 1.0 - std::exp(-x); }
 
 // E1(x) by its series and continued fraction.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace rigel {
@@ -19,7 +20,10 @@ ProsacSampler::ProsacSampler(const GroupedMatches& matches, SampleKind kind, int
       groups_(matches.groups()),
       sampler_(matches.groups(), kind, sample_size) {
   const int n = matches.size();
-  const auto score = [&](int k) { return matches.matches()[k].score; };
+  const auto score = [&](int k) {
+    const double s = matches.matches()[k].score;
+    return std::isnan(s) ? std::numeric_limits<double>::infinity() : s;
+  };
   order_.resize(n);
   std::iota(order_.begin(), order_.end(), 0);
   pool_ = groups_;

@@ -1,7 +1,9 @@
 // PROSAC: samples from the matches of best score first, from all of them in the end.
 //
 // Chum and Matas 2005. Draw number t comes from the best n(t) matches, where n grows such that
-// after as many draws as plain RANSAC would make, every n has had its share of them.
+// after as many draws as plain RANSAC would make, every n has had its share of them. Unlike in the
+// paper the n-th match need not be in the sample, and RANSAC stops by its own rule. A score that is
+// NaN counts as the worst.
 #ifndef RIGEL_MINIMAL_PROSAC_H_
 #define RIGEL_MINIMAL_PROSAC_H_
 

@@ -7,6 +7,15 @@ bool RansacOptions::IsValid(std::string* error) const {
     *error = "threshold_px must be positive and finite";
     return false;
   }
+  // Beyond these its square is nothing to compute with.
+  if (threshold_px < 1e-6 || threshold_px > 1e6) {
+    *error = "threshold_px must lie in 1e-6 to 1e6";
+    return false;
+  }
+  if (score != ScoreKind::kMsac && score != ScoreKind::kMagsac) {
+    *error = "score is no ScoreKind";
+    return false;
+  }
   if (!(confidence > 0 && confidence < 1)) {
     *error = "confidence must lie in (0, 1)";
     return false;
@@ -19,8 +28,8 @@ bool RansacOptions::IsValid(std::string* error) const {
     *error = "min_iterations must not be negative";
     return false;
   }
-  if (!(min_sample_distance_px >= 0)) {
-    *error = "min_sample_distance_px must not be negative";
+  if (!(min_sample_distance_px >= 0) || !std::isfinite(min_sample_distance_px)) {
+    *error = "min_sample_distance_px must be finite and not negative";
     return false;
   }
   if (num_finalists < 0 || num_finalists > kMaxFinalists) {

@@ -1,9 +1,10 @@
 // RANSAC over a solver concept: it knows how to draw, solve and score, and nothing of geometry.
 //
-// MSAC score (Torr and Zisserman 2000), the number of iterations adapts to the share of inliers,
-// scoring stops early once a hypothesis can no longer win, the best hypothesis of the first
-// min_iterations and each better one after them is locally optimized. Deterministic: the seed fixes
-// the result.
+// MSAC or MAGSAC++ score, samples as the solver draws them (PROSAC: prosac.h), the number of
+// iterations adapts to the share of inliers, scoring stops early once a hypothesis can no longer
+// win, the best hypothesis of the first min_iterations and each better one after them is locally
+// optimized, and in the end the best ones of a looser score (finalists). Deterministic: the seed
+// fixes the result.
 #ifndef RIGEL_MINIMAL_RANSAC_H_
 #define RIGEL_MINIMAL_RANSAC_H_
 
@@ -28,11 +29,11 @@ enum class ScoreKind {
 };
 
 struct RansacOptions {
-  double threshold_px = 1.5;   // > 0; 3 sigma keeps the estimate efficient
+  double threshold_px = 1.5;   // in 1e-6 to 1e6; 3 sigma keeps the estimate efficient
   double confidence = 0.9999;  // in (0, 1): that one sample of inliers was drawn
   int max_iterations = 10000;  // >= 1
   // At least so many: noise makes most samples of inliers poor hypotheses.
-  int min_iterations = 100;
+  int min_iterations = 100;  // >= 0
   bool local_optimization = true;
   // Samples from the matches of best score first, where they have scores.
   bool prosac = true;
@@ -225,12 +226,17 @@ RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOp
   optimize_best();
   // From the best one too: few matches of large parallax may be out of its reach.
   const Model best = result.best;
+  constexpr int kMaxWorse = 2;
+  int num_worse = 0;
   for (int k = capacity > 0 ? -1 : 0; k < finalists.size && result.found; ++k) {
     Model model = k < 0 ? best : finalists.items[k].model;
     if ((k >= 0 && solver.Similar(model, best)) || !solver.OptimizeLoosely(&model)) continue;
     int inliers = 0;
+    const double before = result.score;
     const double score = solver.Score(model, result.score, &inliers);
     keep_best(model, score, inliers);
+    // Where the best two finalists end no better, the others would not either.
+    if (k >= 0 && !(result.score < before) && ++num_worse == kMaxWorse) break;
   }
   return result;
 }

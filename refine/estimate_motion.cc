@@ -225,6 +225,11 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
   if (choose) {
     solvers = SuggestSolvers(pair.prior);
     if (exact_prior) solvers.resize(1);
+    if (exact_prior && solvers[0]->prior == PriorKind::kNone) {
+      return Refused(EstimateStatus::kInvalidInput,
+                     std::string("auto: there is no prior for the refinement '") +
+                         RefineFormName(options.refine.form) + "' to hold");
+    }
   }
   const int num_matches = static_cast<int>(pair.matches.size());
 

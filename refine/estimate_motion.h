@@ -14,8 +14,9 @@ namespace rigel {
 
 struct EstimateOptions {
   // A name of SolverCatalogue(), or "auto": SuggestSolvers() of solver_choice.h, one after the
-  // other while the result is doubtful, so that a wrong prior costs time and not accuracy. With a
-  // form that takes the prior as exact (kPrior, kPriorDepths) only the first of them.
+  // other while the result is doubtful, so that a wrong prior costs time and not accuracy (unless
+  // refine.use_prior weighs it). With a form that takes the prior as exact (kPrior, kPriorDepths)
+  // only the first of them.
   std::string solver = "4pt-axis";
   RansacOptions ransac;
   bool refine_motion = true;

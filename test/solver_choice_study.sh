@@ -20,7 +20,9 @@ solvers=3pt,4pt,4pt-axis,5pt+1,auto
   echo "vertical), \`4pt-axis\` (known axis), in the end \`5pt+1\`, which needs none. While fewer than half of the matches agree"
   echo "with the motion, or it has turned away from the prior by more than 2 degrees, the next one joins, and the best score"
   echo "wins. The refinement does not hold the prior, so that what a prior is worth is time: with many outliers the smaller"
-  echo "sample needs fewer iterations, and with a wrong prior the less constrained solver still finds the motion."
+  echo "sample needs fewer iterations, and with a wrong prior the less constrained solver still finds the motion. What is"
+  echo "weighed in the refinement (\`--use_prior_in_refine\`) must be right. Where more than half of the matches are outliers, all"
+  echo "solvers of the list run."
   echo
   echo "$pairs pairs a row, 300 intra-camera matches, 50 percent outliers, 0.5 px; \`planar\` is motion in the plane, \`random\`"
   echo "has vertical motion, which the prior of \`3pt\` denies; noise is the error of the prior (\`--prior=body"

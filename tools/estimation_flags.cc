@@ -9,6 +9,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/refine/solver_choice.h"
 
 DEFINE_string(
     matches, "",
@@ -191,6 +192,9 @@ void ReportUnweighedPriors(const ComparisonOptions& options,
   if (!options.estimate.refine.use_prior || !options.estimate.refine_motion) return;
   std::vector<PriorKind> kinds;
   for (const std::string& name : solvers) {
+    if (name == kAutoSolver) {
+      kinds.insert(kinds.end(), {PriorKind::kPlanar, PriorKind::kVertical, PriorKind::kAxis});
+    }
     const SolverInfo* info = FindSolver(name);
     if (info != nullptr && info->prior != PriorKind::kNone) kinds.push_back(info->prior);
   }

@@ -13,7 +13,10 @@
 #include "rigel/tools/estimation_flags.h"
 #include "rigel/tools/tool.h"
 
-DEFINE_string(solvers, "", "names of solvers, comma separated; all that the priors allow if empty");
+DEFINE_string(
+    solvers, "",
+    "names of solvers, comma separated, auto among them (see rigel_estimate); all that the "
+    "priors allow if empty");
 DEFINE_string(by, "", "sequence: one more row for each sequence of the files");
 DEFINE_string(json, "", "write the report (format rigel-report 1) to this file; - is stdout");
 DEFINE_string(csv, "", "write one line a pair and solver to this file; - is stdout");

@@ -13,7 +13,10 @@
 #include "rigel/tools/estimation_flags.h"
 #include "rigel/tools/tool.h"
 
-DEFINE_string(solver, "4pt-axis", "name of the minimal solver of RANSAC");
+DEFINE_string(
+    solver, "4pt-axis",
+    "name of the minimal solver of RANSAC, or auto: the most constrained one that the priors "
+    "allow, others after it while the result is doubtful");
 DEFINE_string(json, "", "write the motions (format rigel-estimate 1) to this file; - is stdout");
 DEFINE_string(csv, "", "write one line a pair to this file; - is stdout");
 DEFINE_string(

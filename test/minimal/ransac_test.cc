@@ -293,7 +293,8 @@ TEST(Ransac, OptimizesNoMoreFinalistsThanAskedFor) {
     Fit(solver, options);
     // With the best line, of which the finalist that resembles it is left out.
     EXPECT_LE(solver.loose_optimizations, num_finalists > 0 ? num_finalists + 1 : 0);
-    EXPECT_GE(solver.loose_optimizations, num_finalists);
+    // It stops after two that do not help.
+    EXPECT_GE(solver.loose_optimizations, std::min(num_finalists, 2));
   }
 }
 
