@@ -62,7 +62,9 @@ class NormalEquations {
     PriorResiduals::Residuals r;
     PriorResiduals::Jacobian by_motion;
     prior_.Evaluate(pose, &r, &by_motion);
-    const PriorResiduals::Jacobian J = prior_unit_ * by_motion.lazyProduct(basis);
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxPriorResiduals,
+                        6>
+        J = prior_unit_ * by_motion.lazyProduct(basis);
     r *= prior_unit_;
     cost += 0.5 * r.squaredNorm();
     gradient.noalias() += J.transpose().lazyProduct(r);
