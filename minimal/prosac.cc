@@ -14,7 +14,7 @@ constexpr int kFirstPool = 20;
 }  // namespace
 
 ProsacSampler::ProsacSampler(const GroupedMatches& matches, SampleKind kind, int sample_size,
-                             int total_draws)
+                             int total_draws, bool use_scores)
     : kind_(kind),
       sample_size_(sample_size),
       groups_(matches.groups()),
@@ -28,8 +28,8 @@ ProsacSampler::ProsacSampler(const GroupedMatches& matches, SampleKind kind, int
   std::iota(order_.begin(), order_.end(), 0);
   pool_ = groups_;
   pool_size_ = n;
-  const bool ranked =
-      std::any_of(order_.begin(), order_.end(), [&](int k) { return score(k) != score(0); });
+  const bool ranked = use_scores && std::any_of(order_.begin(), order_.end(),
+                                                [&](int k) { return score(k) != score(0); });
   if (!ranked || n <= kFirstPool || n <= sample_size) return;
 
   std::vector<int> all = order_;

@@ -17,9 +17,10 @@ namespace rigel {
 
 class ProsacSampler {
  public:
-  // `total_draws`: as many as plain RANSAC would make, >= 1. Where all matches have one score, the
-  // samples are those of a Sampler.
-  ProsacSampler(const GroupedMatches& matches, SampleKind kind, int sample_size, int total_draws);
+  // `total_draws`: as many as plain RANSAC would make, >= 1. Without `use_scores`, and where all
+  // matches have one score, the samples are those of a Sampler.
+  ProsacSampler(const GroupedMatches& matches, SampleKind kind, int sample_size, int total_draws,
+                bool use_scores = true);
 
   // The next sample, grouped positions of distinct matches; false if there is none. No heap.
   bool Draw(Random* random, int* sample);

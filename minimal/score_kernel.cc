@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "rigel/minimal/sampson_terms.h"
+
 namespace rigel {
 namespace {
 
@@ -23,15 +25,9 @@ RIGEL_KERNEL_BODY PixelArrays BlockAt(const PixelArrays& p, int begin) {
 // C^2 and the squared norm of its gradient; their quotient is r^2.
 RIGEL_KERNEL_BODY void NumeratorAndGradient(const PixelArrays& p, int i, const double F[9],
                                             double* C2, double* g2) {
-  const double x1 = p.x1[i], y1 = p.y1[i], x2 = p.x2[i], y2 = p.y2[i];
-  const double a0 = F[0] * x1 + F[1] * y1 + F[2];
-  const double a1 = F[3] * x1 + F[4] * y1 + F[5];
-  const double a2 = F[6] * x1 + F[7] * y1 + F[8];
-  const double b0 = F[0] * x2 + F[3] * y2 + F[6];
-  const double b1 = F[1] * x2 + F[4] * y2 + F[7];
-  const double C = a0 * x2 + a1 * y2 + a2;
-  *C2 = C * C;
-  *g2 = (a0 * a0 + a1 * a1) + (b0 * b0 + b1 * b1);
+  const SampsonTerms t = TermsOf(F, p.x1[i], p.y1[i], p.x2[i], p.y2[i]);
+  *C2 = t.C * t.C;
+  *g2 = t.gradient2;
 }
 
 RIGEL_KERNEL_BODY void TruncatedErrors(const PixelArrays& block, const double F[9], double t2,

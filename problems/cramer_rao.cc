@@ -75,7 +75,7 @@ std::optional<CramerRaoBound> ComputeCramerRaoBound(const RefineOptions& options
   std::vector<char> mask;
   // An outlier that fits the truth by chance is no information.
   const double gate = std::max(options.threshold_px, kGateSigmas * *pair.noise_px);
-  SelectInliers(matches, truth, gate, &errors, &mask);
+  SelectPlausibleInliers(matches, truth, gate, &errors, &mask);
   Matrix6d information = NoiseFreeInformation(pair, matches, mask, truth);
   if (options.use_prior) {
     const PriorResiduals prior(pair.prior, options.prior_kind, truth);

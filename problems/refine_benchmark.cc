@@ -89,7 +89,6 @@ RefineBenchmarkRow Run(const std::string& name, const std::string& loss,
     rotations.push_back(RadToDeg(RotationError(problem.pair.truth->R, pose.R)));
     directions.push_back(RadToDeg(TranslationDirectionError(problem.pair.truth->t, pose.t)));
   }
-  if (problems.empty()) return row;
   row.failures = failures / static_cast<double>(problems.size());
   row.iterations = iterations / static_cast<double>(problems.size());
   if (const auto s = ComputeStatistics(times)) row.median_us = s->median;
@@ -104,6 +103,7 @@ RefineBenchmarkRow Run(const std::string& name, const std::string& loss,
 std::vector<RefineBenchmarkRow> BenchmarkRefinement(const RefineBenchmarkOptions& options) {
   const std::vector<Problem> problems = MakeProblems(options);
   std::vector<RefineBenchmarkRow> rows;
+  if (problems.empty()) return rows;
   for (const LossKind loss : {LossKind::kNone, LossKind::kCauchy}) {
     rows.push_back(Run("small engine", LossName(loss), problems,
                        [loss](const Problem& problem, Pose* pose, int* iterations) {

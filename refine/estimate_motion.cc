@@ -8,7 +8,6 @@
 
 #include "rigel/minimal/prepared_matches.h"
 #include "rigel/minimal/prosac.h"
-#include "rigel/minimal/sampler.h"
 #include "rigel/refine/sign_and_scale.h"
 #include "rigel/refine/small_engine.h"
 #include "rigel/refine/solver_choice.h"
@@ -29,8 +28,8 @@ class FramePairSolver {
         subset_(matches.rig(), EvenSubset(matches.matches(), kSubset)),
         sign_subset_(matches.rig(), EvenSubset(matches.matches(), kSignSubset)),
         prepared_(matches.rig(), matches.matches(), alignment),
-        sampler_(matches.groups(), solver.sampling, solver.sample_size),
-        prosac_(matches, solver.sampling, solver.sample_size, options.max_iterations),
+        sampler_(matches, solver.sampling, solver.sample_size, options.max_iterations,
+                 options.prosac),
         options_(options),
         optimized_(matches.rig(), EvenSubset(matches.matches(), kOptimized)),
         loose_engine_(subset_),
@@ -48,8 +47,7 @@ class FramePairSolver {
   int sample_size() const { return solver_.sample_size; }
   bool Draw(Random* random, int* sample) const {
     for (int k = 0; k < kMaxRedraws; ++k) {
-      const bool drawn =
-          options_.prosac ? prosac_.Draw(random, sample) : sampler_.Draw(random, sample);
+      const bool drawn = sampler_.Draw(random, sample);
       if (!drawn || !options_.spread_samples || IsSpread(sample)) return drawn;
     }
     return true;
@@ -150,8 +148,7 @@ class FramePairSolver {
   GroupedMatches subset_;
   GroupedMatches sign_subset_;
   PreparedMatches prepared_;
-  Sampler sampler_;
-  mutable ProsacSampler prosac_;
+  mutable ProsacSampler sampler_;
   const RansacOptions& options_;
   std::optional<LossTable> loss_;
   GroupedMatches optimized_;

@@ -56,8 +56,8 @@ void SquaredParallax(const RayArrays& rays, const Eigen::Matrix3d& R, int size, 
 
 }  // namespace
 
-int SelectInliers(const GroupedMatches& matches, const Pose& pose, double gate_px,
-                  std::vector<double>* squared_errors, std::vector<char>* inliers) {
+int SelectPlausibleInliers(const GroupedMatches& matches, const Pose& pose, double gate_px,
+                           std::vector<double>* squared_errors, std::vector<char>* inliers) {
   // With an inter-camera baseline the parallax is of another size.
   enum { kIntra, kInter };
   Histogram within[2], beyond[2];

@@ -21,8 +21,8 @@ namespace rigel {
 // these counts is an outlier with too large a probability is left out: above
 // kMaxOutlierProbability at the 90th percentile of the parallax, beyond it less in inverse
 // proportion to its square, as an outlier's harm grows, down to kMinOutlierProbability.
-int SelectInliers(const GroupedMatches& matches, const Pose& pose, double gate_px,
-                  std::vector<double>* squared_errors, std::vector<char>* inliers);
+int SelectPlausibleInliers(const GroupedMatches& matches, const Pose& pose, double gate_px,
+                           std::vector<double>* squared_errors, std::vector<char>* inliers);
 
 inline constexpr double kBandBegin = 8.0;
 inline constexpr double kBandEnd = 24.0;

@@ -243,7 +243,7 @@ bool Refiner::SelectInliers(const Pose& pose) {
   const double gate =
       std::max(options_.threshold_px, kGateSigmas * options_.noise_px.value_or(0.0));
   num_inliers_ = judges_parallax_
-                     ? rigel::SelectInliers(matches_, pose, gate, &squared_errors_, &mask_)
+                     ? SelectPlausibleInliers(matches_, pose, gate, &squared_errors_, &mask_)
                      : matches_.SelectInliers(pose, gate, &squared_errors_, &mask_);
   return mask_ != previous_mask_;
 }

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "rigel/minimal/sampson_terms.h"
+
 // Plain loops, see cpu_path.h.
 namespace rigel {
 namespace {
@@ -70,20 +72,14 @@ RIGEL_KERNEL_BODY void Linearize(LossKind kind, bool newton_curvature, bool deri
   constexpr double kMinNewton = 1.0 / 3.0;
   for (int i = 0; i < kBlock; ++i) {
     const double x1 = p.x1[i], y1 = p.y1[i], x2 = p.x2[i], y2 = p.y2[i];
-    const double a0 = F[0] * x1 + F[1] * y1 + F[2];
-    const double a1 = F[3] * x1 + F[4] * y1 + F[5];
-    const double a2 = F[6] * x1 + F[7] * y1 + F[8];
-    const double b0 = F[0] * x2 + F[3] * y2 + F[6];
-    const double b1 = F[1] * x2 + F[4] * y2 + F[7];
-    const double C = a0 * x2 + a1 * y2 + a2;
-    const double gradient2 = (a0 * a0 + a1 * a1) + (b0 * b0 + b1 * b1);
+    const SampsonTerms t = TermsOf(F, x1, y1, x2, y2);
     const double floor2 = rounding2 * (((x1 * x1 + y1 * y1) + (x2 * x2 + y2 * y2)) + 2.0);
     // Also false for NaN; infinity would give zero weight below.
-    const bool regular = gradient2 > floor2;
-    const double inverse = 1.0 / sqrt(regular ? gradient2 : 1.0);
+    const bool regular = t.gradient2 > floor2;
+    const double inverse = 1.0 / sqrt(regular ? t.gradient2 : 1.0);
     const double w = regular ? p.w[i] : 0.0;
     const double we = w * inverse;
-    const double e = we * C;
+    const double e = we * t.C;
     double rho, slope, newton;
     Loss(kind, c, c2, e * e, &rho, &slope, &newton);
     rows->rho[i] = rho;
@@ -100,20 +96,20 @@ RIGEL_KERNEL_BODY void Linearize(LossKind kind, bool newton_curvature, bool deri
     }
     // de/dF = u p1' - v b', where the third entry of b counts as zero.
     const double k = q * we;
-    const double m = C * inverse * inverse;
-    const double u0 = k * (x2 - m * a0);
-    const double u1 = k * (y2 - m * a1);
+    const double m = t.C * inverse * inverse;
+    const double u0 = k * (x2 - m * t.a0);
+    const double u1 = k * (y2 - m * t.a1);
     const double v0 = k * m * x2;
     const double v1 = k * m * y2;
     const double v2 = k * m;
-    rows->row[0][i] = u0 * x1 - v0 * b0;
-    rows->row[1][i] = u0 * y1 - v0 * b1;
+    rows->row[0][i] = u0 * x1 - v0 * t.b0;
+    rows->row[1][i] = u0 * y1 - v0 * t.b1;
     rows->row[2][i] = u0;
-    rows->row[3][i] = u1 * x1 - v1 * b0;
-    rows->row[4][i] = u1 * y1 - v1 * b1;
+    rows->row[3][i] = u1 * x1 - v1 * t.b0;
+    rows->row[4][i] = u1 * y1 - v1 * t.b1;
     rows->row[5][i] = u1;
-    rows->row[6][i] = k * x1 - v2 * b0;
-    rows->row[7][i] = k * y1 - v2 * b1;
+    rows->row[6][i] = k * x1 - v2 * t.b0;
+    rows->row[7][i] = k * y1 - v2 * t.b1;
     rows->row[8][i] = k;
     rows->row[9][i] = qe * e;
   }
@@ -214,12 +210,8 @@ RIGEL_KERNEL_BODY void Dispatch(const SampsonKernelOptions& options, bool deriva
 RIGEL_KERNEL_BODY void GradientWeightsBody(const PixelArrays& pixels, const double F[9],
                                            double floor2, double* weights) {
   for (int i = 0; i < pixels.size; ++i) {
-    const double x1 = pixels.x1[i], y1 = pixels.y1[i], x2 = pixels.x2[i], y2 = pixels.y2[i];
-    const double a0 = F[0] * x1 + F[1] * y1 + F[2];
-    const double a1 = F[3] * x1 + F[4] * y1 + F[5];
-    const double b0 = F[0] * x2 + F[3] * y2 + F[6];
-    const double b1 = F[1] * x2 + F[4] * y2 + F[7];
-    const double gradient2 = (a0 * a0 + a1 * a1) + (b0 * b0 + b1 * b1);
+    const double gradient2 =
+        TermsOf(F, pixels.x1[i], pixels.y1[i], pixels.x2[i], pixels.y2[i]).gradient2;
     const double weight = gradient2 / (gradient2 + floor2);
     weights[i] = gradient2 > 0.0 ? weight : 0.0;
   }

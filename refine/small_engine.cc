@@ -5,13 +5,10 @@
 
 #include <Eigen/Cholesky>
 
-#include "rigel/refine/sampson_kernel.h"
+#include "rigel/refine/normal_equations.h"
 
 namespace rigel {
 namespace {
-
-using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
-using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 
 // Cost, gradient and curvature at one point, and how to get them.
 class NormalEquations {
@@ -31,7 +28,7 @@ class NormalEquations {
     kernel_.curvature = Curvature::kNewton;
   }
 
-  void Evaluate(const Vector& parameters) {
+  void Evaluate(const ParameterVector& parameters) {
     const int n = static_cast<int>(parameters.size());
     Pose pose;
     MotionBasis basis;
@@ -43,20 +40,8 @@ class NormalEquations {
     for (size_t g = 0; g < groups_->size(); ++g) {
       const MatchGroup& group = matches_.groups()[g];
       const GroupLinearization& linear = (*groups_)[g];
-      const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = linear.F;
-      SampsonSums sums;
-      SumSampson(kernel_, matches_.Pixels(group), weights_.data() + group.begin, F.data(),
-                 linear.rounding2, true, &sums);
-      cost += sums.cost;
-      Eigen::Matrix<double, 9, Eigen::Dynamic, Eigen::ColMajor, 9, 6> D(9, n);
-      for (int m = 0; m < n; ++m) {
-        Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(D.col(m).data()) = linear.dF[m];
-      }
-      const Eigen::Map<const Eigen::Matrix<double, 9, 9>> H(sums.H);
-      const Eigen::Matrix<double, 9, Eigen::Dynamic, Eigen::ColMajor, 9, 6> HD = H.lazyProduct(D);
-      gradient.noalias() +=
-          D.transpose().lazyProduct(Eigen::Map<const Eigen::Matrix<double, 9, 1>>(sums.g));
-      curvature.noalias() += D.transpose().lazyProduct(HD);
+      AddNormalEquations(kernel_, linear, matches_.Pixels(group), weights_.data() + group.begin,
+                         &cost, &gradient, &curvature);
     }
     if (prior_.size() == 0) return;
     PriorResiduals::Residuals r;
@@ -76,8 +61,8 @@ class NormalEquations {
   }
 
   double cost = 0.0;
-  Vector gradient;
-  Square curvature;
+  ParameterVector gradient;
+  ParameterMatrix curvature;
 
  private:
   const GroupedMatches& matches_;
@@ -90,12 +75,12 @@ class NormalEquations {
 };
 
 // Damping by the diagonal of the scaled curvature; radians and metres are unlike.
-Vector DampedStep(const NormalEquations& at, double mu) {
+ParameterVector DampedStep(const NormalEquations& at, double mu) {
   constexpr double kMinDiagonal = 1e-6;
-  const Vector scale = (1.0 + at.curvature.diagonal().array().sqrt()).inverse();
-  Square scaled = scale.asDiagonal() * at.curvature * scale.asDiagonal();
+  const ParameterVector scale = (1.0 + at.curvature.diagonal().array().sqrt()).inverse();
+  ParameterMatrix scaled = scale.asDiagonal() * at.curvature * scale.asDiagonal();
   scaled.diagonal() += mu * scaled.diagonal().cwiseMax(kMinDiagonal);
-  const Vector b = -(scale.array() * at.gradient.array());
+  const ParameterVector b = -(scale.array() * at.gradient.array());
   return scale.array() * scaled.llt().solve(b).array();
 }
 
@@ -112,7 +97,7 @@ SmallEngineSummary SmallEngine::Solve(const SmallEngineOptions& options,
   SmallEngineSummary summary;
   num_iterations_ = 0;
   const int n = parameterization.size();
-  Eigen::Map<Vector> best(parameters, n);
+  Eigen::Map<ParameterVector> best(parameters, n);
   NormalEquations at(options, matches_, parameterization, weights, prior, prior_unit, &groups_);
   NormalEquations next = at;
   at.Evaluate(best);
@@ -123,7 +108,7 @@ SmallEngineSummary SmallEngine::Solve(const SmallEngineOptions& options,
   double growth = 2.0;
   while (summary.num_iterations < options.max_num_iterations) {
     ++summary.num_iterations;
-    const Vector step = DampedStep(at, mu);
+    const ParameterVector step = DampedStep(at, mu);
     const double predicted =
         -step.dot(at.gradient) - 0.5 * step.dot(at.curvature.lazyProduct(step));
     if (step.allFinite() && (predicted <= options.tolerance * at.cost || step.norm() < kMinStep)) {
@@ -134,7 +119,7 @@ SmallEngineSummary SmallEngine::Solve(const SmallEngineOptions& options,
       }
       break;
     }
-    const Vector candidate = best + step;
+    const ParameterVector candidate = best + step;
     if (candidate.allFinite()) next.Evaluate(candidate);
     if (candidate.allFinite() && next.AllFinite() && next.cost < at.cost) {
       const double quality = (at.cost - next.cost) / predicted;

@@ -11,7 +11,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/refine/epipolar_residuals.h"
-#include "rigel/refine/sampson_kernel.h"
+#include "rigel/refine/normal_equations.h"
 
 namespace rigel {
 
@@ -20,15 +20,12 @@ namespace {
 // J'J of the Sampson residuals of one camera pair, each times its weight.
 Matrix6d GroupInformation(const GroupedMatches& matches, const MatchGroup& group,
                           const GroupLinearization& linear, const double* weights) {
-  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = linear.F;
-  SampsonSums sums;
-  SumSampson(SampsonKernelOptions(), matches.Pixels(group), weights, F.data(), linear.rounding2,
-             true, &sums);
-  Eigen::Matrix<double, 9, 6> D;
-  for (int m = 0; m < 6; ++m) {
-    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(D.col(m).data()) = linear.dF[m];
-  }
-  return D.transpose() * Eigen::Map<const Eigen::Matrix<double, 9, 9>>(sums.H) * D;
+  double cost = 0.0;
+  ParameterVector gradient = ParameterVector::Zero(6);
+  ParameterMatrix information = ParameterMatrix::Zero(6, 6);
+  AddNormalEquations(SampsonKernelOptions(), linear, matches.Pixels(group), weights, &cost,
+                     &gradient, &information);
+  return information;
 }
 
 std::vector<GroupLinearization> LinearizeFully(const GroupedMatches& matches, const Pose& pose) {

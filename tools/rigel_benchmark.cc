@@ -151,6 +151,11 @@ int RunRefinement() {
   options.rotation_deg = FLAGS_rotation_deg;
   options.seed = FLAGS_seed;
   const std::vector<RefineBenchmarkRow> rows = BenchmarkRefinement(options);
+  if (rows.empty()) {
+    std::cerr << "with --rotation_deg=" << FLAGS_rotation_deg
+              << " hardly any point stays in view\n";
+    return kExitFailed;
+  }
   bool ok = true;
   if (FLAGS_json != "-") {
     std::cout << RefineBenchmarkTable(rows)

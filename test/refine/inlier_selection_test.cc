@@ -28,7 +28,7 @@ TEST(InlierSelection, WithoutOutliersItIsTheGateAlone) {
       std::vector<double> errors, gate_errors;
       std::vector<char> selected, by_gate;
       const double gate = kGateSigmas * options.noise_px;
-      const int count = SelectInliers(matches, *pair.truth, gate, &errors, &selected);
+      const int count = SelectPlausibleInliers(matches, *pair.truth, gate, &errors, &selected);
       total += matches.SelectInliers(*pair.truth, gate, &gate_errors, &by_gate);
       lost += static_cast<int>(std::count(by_gate.begin(), by_gate.end(), 1)) - count;
       EXPECT_EQ(count, std::count(selected.begin(), selected.end(), 1));
@@ -65,7 +65,7 @@ TEST(InlierSelection, ChanceOutliersCostNextToNothing) {
     std::vector<double> errors;
     std::vector<char> selected, by_gate;
     const double gate = kGateSigmas * options.noise_px;
-    SelectInliers(matches, *pair.truth, gate, &errors, &selected);
+    SelectPlausibleInliers(matches, *pair.truth, gate, &errors, &selected);
     matches.SelectInliers(*pair.truth, gate, &errors, &by_gate);
     for (int k = 0; k < matches.size(); ++k) {
       good += is_good[k] && by_gate[k];
