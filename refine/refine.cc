@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <deque>
 #include <functional>
 #include <limits>
@@ -27,45 +26,6 @@
 
 namespace rigel {
 namespace {
-
-template <class Enum, size_t N>
-const char* NameOf(const std::array<std::pair<Enum, const char*>, N>& names, Enum value) {
-  for (const auto& entry : names) {
-    if (entry.first == value) return entry.second;
-  }
-  return "unknown";
-}
-
-template <class Enum, size_t N>
-bool ValueOf(const std::array<std::pair<Enum, const char*>, N>& names, std::string_view name,
-             Enum* value) {
-  for (const auto& entry : names) {
-    if (name == entry.second) {
-      *value = entry.first;
-      return true;
-    }
-  }
-  return false;
-}
-
-constexpr std::array<std::pair<RefineForm, const char*>, 5> kFormNames = {
-    {{RefineForm::kFull, "full"},
-     {RefineForm::kPrior, "prior"},
-     {RefineForm::kDepths, "depths"},
-     {RefineForm::kPriorDepths, "prior-depths"},
-     {RefineForm::kBundle, "bundle"}}};
-
-constexpr std::array<std::pair<ResidualKind, const char*>, 3> kResidualNames = {
-    {{ResidualKind::kSampson, "sampson"},
-     {ResidualKind::kAngular, "angular"},
-     {ResidualKind::kAlgebraic, "algebraic"}}};
-
-constexpr std::array<std::pair<Termination, const char*>, 5> kTerminationNames = {
-    {{Termination::kNotRun, "not run"},
-     {Termination::kConverged, "converged"},
-     {Termination::kIterationLimit, "iteration limit"},
-     {Termination::kDegenerate, "degenerate"},
-     {Termination::kFailure, "failure"}}};
 
 // What all residual blocks share at one point: the motion and the linearized camera pairs.
 class SharedEvaluation : public ceres::EvaluationCallback {
@@ -668,18 +628,6 @@ RefineSummary Refiner::Run(Pose* pose) {
 
 }  // namespace
 
-const char* RefineFormName(RefineForm form) { return NameOf(kFormNames, form); }
-bool ParseRefineForm(std::string_view name, RefineForm* form) {
-  return ValueOf(kFormNames, name, form);
-}
-const char* ResidualName(ResidualKind kind) { return NameOf(kResidualNames, kind); }
-bool ParseResidual(std::string_view name, ResidualKind* kind) {
-  return ValueOf(kResidualNames, name, kind);
-}
-const char* TerminationName(Termination termination) {
-  return NameOf(kTerminationNames, termination);
-}
-
 bool RefineOptions::IsValid(std::string* error) const {
   const bool prior_exact = form == RefineForm::kPrior || form == RefineForm::kPriorDepths;
   if (std::string(RefineFormName(form)) == "unknown" ||
@@ -709,62 +657,6 @@ bool RefineOptions::IsValid(std::string* error) const {
     return false;
   }
   return true;
-}
-
-std::string RefineSummary::BriefReport() const {
-  char text[256];
-  std::snprintf(
-      text, sizeof(text),
-      "%s: %d inliers, %d rounds, %d iterations, cost %.6g -> %.6g, median residual %.3f px",
-      message.c_str(), num_inliers, num_rounds, num_iterations, initial_cost, final_cost,
-      median_residual_px);
-  return text;
-}
-
-std::string RefineSummary::ObservabilityReport() const {
-  char text[256];
-  if (!rotation_observable && exceeds_chance) {
-    if (rotation_sigma >= 0 && RadToDeg(rotation_sigma) < 180) {
-      std::snprintf(text, sizeof(text), "the standard deviation of the rotation is %.1f deg",
-                    RadToDeg(rotation_sigma));
-    } else {
-      std::snprintf(text, sizeof(text), "the %d matches that agree do not determine the rotation",
-                    num_inliers);
-    }
-    return text;
-  }
-  if (!rotation_observable) {
-    std::snprintf(text, sizeof(text),
-                  "%d matches agree: too few, or no more than chance allows, to determine a motion",
-                  num_inliers);
-    return text;
-  }
-  if (!translation_observable) {
-    if (parallax_px >= 0 && !std::isfinite(parallax_px)) {
-      std::snprintf(text, sizeof(text),
-                    "|t| is consistent with zero: its standard deviation is %.0f percent of it",
-                    100 * relative_scale_sigma);
-    } else if (parallax_px >= 0 && !(parallax_px > parallax_limit_px)) {
-      std::snprintf(
-          text, sizeof(text),
-          "|t| is consistent with zero: 80%% of the matches move < %.2f px, noise %.2f px",
-          parallax_px, noise_px);
-    } else if (direction_sigma >= 0) {
-      std::snprintf(text, sizeof(text),
-                    "the standard deviation of the translation direction is %.1f deg",
-                    RadToDeg(direction_sigma));
-    } else {
-      std::snprintf(text, sizeof(text), "the matches do not determine it");
-    }
-    return text;
-  }
-  if (!scale_observable) {
-    return "direction of translation observable, scale not (standard deviation of |t| above " +
-           std::to_string(static_cast<int>(100 * kScaleObservableRatio)) + " percent)";
-  }
-  std::snprintf(text, sizeof(text), "all observable, standard deviation of |t| %.2f percent",
-                100 * relative_scale_sigma);
-  return weakest_direction.empty() ? std::string(text) : text + ("; weakest: " + weakest_direction);
 }
 
 RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,

@@ -184,5 +184,12 @@ TEST(BenchmarkTest, RansacRefusesFlagsThatHaveNoEffect) {
   }
 }
 
+TEST(Benchmark, RefinementWithoutAProblemFails) {
+  const Outcome run = RunTool("benchmark", {"--refine", "--rotation_deg=170", "--trials=2"});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, HasSubstr("--rotation_deg=170"));
+  EXPECT_THAT(run.out, testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace rigel
