@@ -10,19 +10,24 @@
 namespace rigel {
 namespace {
 
+// Of at most six parameters: no heap.
+using ParameterVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
+using ParameterMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
 // Cost, gradient and curvature at one point, and how to get them.
-class NormalEquations {
+class ParameterEquations {
  public:
-  NormalEquations(const SmallEngineOptions& options, const GroupedMatches& matches,
+  ParameterEquations(const SmallEngineOptions& options, const GroupedMatches& matches,
                   const MotionParameterization& parameterization,
                   const std::vector<double>& weights, const PriorResiduals& prior,
-                  double prior_unit, std::vector<GroupLinearization>* groups)
+                  double prior_unit)
       : matches_(matches),
         parameterization_(parameterization),
         weights_(weights),
         prior_(prior),
-        prior_unit_(prior_unit),
-        groups_(groups) {
+        prior_unit_(prior_unit) {
     kernel_.loss = options.loss;
     kernel_.loss_scale = options.loss_scale;
     kernel_.curvature = Curvature::kNewton;
@@ -33,16 +38,17 @@ class NormalEquations {
     Pose pose;
     MotionBasis basis;
     parameterization_.Evaluate(parameters.data(), &pose, &basis);
-    LinearizeGroups(matches_, ResidualKind::kSampson, pose, &basis, groups_);
-    cost = 0.0;
-    gradient.setZero(n);
-    curvature.setZero(n, n);
-    for (size_t g = 0; g < groups_->size(); ++g) {
-      const MatchGroup& group = matches_.groups()[g];
-      const GroupLinearization& linear = (*groups_)[g];
-      AddNormalEquations(kernel_, linear, matches_.Pixels(group), weights_.data() + group.begin,
-                         &cost, &gradient, &curvature);
+    MotionNormalEquations sum;
+    for (const MatchGroup& group : matches_.groups()) {
+      AddNormalEquations(kernel_, matches_, group, pose, weights_.data() + group.begin, &sum);
     }
+    cost = sum.cost;
+    // Filled up with zeros, so that the sizes are known to the compiler.
+    Matrix6d B = Matrix6d::Zero();
+    B.leftCols(n) = basis;
+    gradient = (B.transpose() * sum.gradient).head(n);
+    const Matrix6d by_parameters = B.transpose() * (sum.curvature * B);
+    curvature = by_parameters.topLeftCorner(n, n);
     if (prior_.size() == 0) return;
     PriorResiduals::Residuals r;
     PriorResiduals::Jacobian by_motion;
@@ -71,11 +77,10 @@ class NormalEquations {
   const PriorResiduals& prior_;
   double prior_unit_;
   SampsonKernelOptions kernel_;
-  std::vector<GroupLinearization>* groups_;
 };
 
 // Damping by the diagonal of the scaled curvature; radians and metres are unlike.
-ParameterVector DampedStep(const NormalEquations& at, double mu) {
+ParameterVector DampedStep(const ParameterEquations& at, double mu) {
   constexpr double kMinDiagonal = 1e-6;
   const ParameterVector scale = (1.0 + at.curvature.diagonal().array().sqrt()).inverse();
   ParameterMatrix scaled = scale.asDiagonal() * at.curvature * scale.asDiagonal();
@@ -98,8 +103,8 @@ SmallEngineSummary SmallEngine::Solve(const SmallEngineOptions& options,
   num_iterations_ = 0;
   const int n = parameterization.size();
   Eigen::Map<ParameterVector> best(parameters, n);
-  NormalEquations at(options, matches_, parameterization, weights, prior, prior_unit, &groups_);
-  NormalEquations next = at;
+  ParameterEquations at(options, matches_, parameterization, weights, prior, prior_unit);
+  ParameterEquations next = at;
   at.Evaluate(best);
   if (!at.AllFinite()) return summary;
   summary.usable = true;

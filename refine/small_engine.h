@@ -11,7 +11,6 @@
 
 #include "rigel/core/pose.h"
 #include "rigel/minimal/grouped_matches.h"
-#include "rigel/refine/epipolar_residuals.h"
 #include "rigel/refine/loss.h"
 #include "rigel/refine/motion_parameterization.h"
 #include "rigel/refine/prior_residuals.h"
@@ -63,7 +62,6 @@ class SmallEngine {
 
  private:
   const GroupedMatches& matches_;
-  std::vector<GroupLinearization> groups_;
   std::vector<double> weights_;
   int num_iterations_ = 0;
 };
