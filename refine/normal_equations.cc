@@ -42,14 +42,14 @@ RowMajor3d Differentiate(const GroupedMatches& matches, const MatchGroup& group,
 }  // namespace
 
 void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatches& matches,
-                        const MatchGroup& group, const Pose& pose, const double* weights,
-                        MotionNormalEquations* sum) {
+                        const MatchGroup& group, const PixelArrays& pixels, const double* weights,
+                        const Pose& pose, MotionNormalEquations* sum) {
   FundamentalDerivatives D;
   const RowMajor3d F = Differentiate(matches, group, pose, &D);
   constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
   SampsonSums sums;
-  SumSampson(options, matches.Pixels(group), weights, F.data(),
-             kRounding * kRounding * F.squaredNorm(), true, &sums);
+  SumSampson(options, pixels, weights, F.data(), kRounding * kRounding * F.squaredNorm(), true,
+             &sums);
   sum->cost += sums.cost;
   AddProjected(sums, D, sum->gradient.data(), sum->curvature.data());
 }

@@ -17,11 +17,11 @@ struct MotionNormalEquations {
   Eigen::Matrix<double, 6, 6> curvature = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-// Adds what SumSampson() gives for the matches of one group at `pose`. `weights`: one number for
-// each of them.
+// Adds what SumSampson() gives at `pose` for `pixels` and their weights: matches of the group, or
+// some of them.
 void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatches& matches,
-                        const MatchGroup& group, const Pose& pose, const double* weights,
-                        MotionNormalEquations* sum);
+                        const MatchGroup& group, const PixelArrays& pixels, const double* weights,
+                        const Pose& pose, MotionNormalEquations* sum);
 
 }  // namespace rigel
 

@@ -13,7 +13,7 @@ constexpr int kBlock = 64;
 constexpr int kLanes = 8;
 constexpr int kEntries = 9;  // of F
 
-// A block of matches, short ones filled up with matches of weight zero.
+// A block of matches, filled up to whole lanes with matches of weight zero.
 struct Block {
   double x1[kBlock], y1[kBlock], x2[kBlock], y2[kBlock], w[kBlock];
 };
@@ -26,6 +26,9 @@ struct Rows {
   double residual[kBlock];            // f rho' e
   double rho[kBlock];                 // kCauchy: 1 + s / scale^2
 };
+
+// No loop has a rest of single matches.
+RIGEL_KERNEL_BODY int WholeLanes(int size) { return (size + (kLanes - 1)) & ~(kLanes - 1); }
 
 // What the loss makes of s: its value (kCauchy: what the logarithm is taken of), rho', and
 // D = 1 + 2 s rho'' / rho', Newton's share of the curvature.
@@ -71,10 +74,11 @@ RIGEL_KERNEL_BODY void Loss(LossKind kind, double c, double c2, double s, double
 
 // Returns the sum of rho over the block (kCauchy: of what is left of it, see below).
 RIGEL_KERNEL_BODY void Linearize(LossKind kind, bool newton_curvature, bool derivatives, double c,
-                                 const Block& p, const double F[9], double rounding2, Rows* rows) {
+                                 const Block& p, int size, const double F[9], double rounding2,
+                                 Rows* rows) {
   const double c2 = c * c;
   constexpr double kMinNewton = 1.0 / 3.0;
-  for (int i = 0; i < kBlock; ++i) {
+  for (int i = 0; i < size; ++i) {
     const double x1 = p.x1[i], y1 = p.y1[i], x2 = p.x2[i], y2 = p.y2[i];
     const SampsonTerms t = TermsOf(F, x1, y1, x2, y2);
     const double floor2 = rounding2 * (((x1 * x1 + y1 * y1) + (x2 * x2 + y2 * y2)) + 2.0);
@@ -123,18 +127,18 @@ RIGEL_KERNEL_BODY void Linearize(LossKind kind, bool newton_curvature, bool deri
   }
 }
 
-RIGEL_KERNEL_BODY double Dot(const double* a, const double* b) {
+RIGEL_KERNEL_BODY double Dot(const double* a, const double* b, int size) {
   double lane[kLanes] = {0, 0, 0, 0, 0, 0, 0, 0};
-  for (int i = 0; i < kBlock; i += kLanes) {
+  for (int i = 0; i < size; i += kLanes) {
     for (int l = 0; l < kLanes; ++l) lane[l] += a[i + l] * b[i + l];
   }
   return ((lane[0] + lane[4]) + (lane[1] + lane[5])) + ((lane[2] + lane[6]) + (lane[3] + lane[7]));
 }
 
-RIGEL_KERNEL_BODY double SumRho(LossKind kind, double c, const double* rho) {
+RIGEL_KERNEL_BODY double SumRho(LossKind kind, double c, const double* rho, int size) {
   if (kind != LossKind::kCauchy) {
     double lane[kLanes] = {0, 0, 0, 0, 0, 0, 0, 0};
-    for (int i = 0; i < kBlock; i += kLanes) {
+    for (int i = 0; i < size; i += kLanes) {
       for (int l = 0; l < kLanes; ++l) lane[l] += rho[i + l];
     }
     return ((lane[0] + lane[4]) + (lane[1] + lane[5])) +
@@ -143,7 +147,7 @@ RIGEL_KERNEL_BODY double SumRho(LossKind kind, double c, const double* rho) {
   // One logarithm for the product of eight.
   double product[kLanes];
   for (int l = 0; l < kLanes; ++l) product[l] = rho[l];
-  for (int i = kLanes; i < kBlock; i += kLanes) {
+  for (int i = kLanes; i < size; i += kLanes) {
     for (int l = 0; l < kLanes; ++l) product[l] *= rho[i + l];
   }
   double sum = 0.0;
@@ -151,41 +155,58 @@ RIGEL_KERNEL_BODY double SumRho(LossKind kind, double c, const double* rho) {
   return c * c * sum;
 }
 
+struct Accumulated {
+  double cost;
+  double g[kEntries];
+  double H[45];  // the upper triangle, row by row
+};
+
+// Adds matches begin to begin + size. A size that the compiler knows makes faster loops.
+RIGEL_KERNEL_BODY void AddBlock(LossKind kind, bool newton, bool derivatives, double c,
+                                const PixelArrays& pixels, const double* weights, int begin,
+                                int size, const double F[9], double rounding2, Accumulated* sum) {
+  Block block;
+  Rows rows;
+  for (int i = 0; i < size; ++i) block.x1[i] = pixels.x1[begin + i];
+  for (int i = 0; i < size; ++i) block.y1[i] = pixels.y1[begin + i];
+  for (int i = 0; i < size; ++i) block.x2[i] = pixels.x2[begin + i];
+  for (int i = 0; i < size; ++i) block.y2[i] = pixels.y2[begin + i];
+  for (int i = 0; i < size; ++i) block.w[i] = weights[begin + i];
+  const int whole = WholeLanes(size);
+  for (int i = size; i < whole; ++i) {
+    block.x1[i] = block.y1[i] = block.x2[i] = block.y2[i] = block.w[i] = 0.0;
+  }
+  Linearize(kind, newton, derivatives, c, block, whole, F, rounding2, &rows);
+  sum->cost += SumRho(kind, c, rows.rho, whole);
+  if (!derivatives) return;
+  int k = 0;
+  for (int i = 0; i < kEntries; ++i) {
+    for (int j = i; j < kEntries; ++j) sum->H[k++] += Dot(rows.row[i], rows.weighted[j], whole);
+  }
+  for (int i = 0; i < kEntries; ++i) sum->g[i] += Dot(rows.row[i], rows.residual, whole);
+}
+
 RIGEL_KERNEL_BODY void Sum(LossKind kind, bool newton, bool derivatives, double c,
                            const PixelArrays& pixels, const double* weights, const double F[9],
                            double rounding2, SampsonSums* sums) {
-  Block block;
-  Rows rows;
-  double cost = 0.0;
-  double g[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
-  double H[45];
-  for (int i = 0; i < 45; ++i) H[i] = 0.0;
-  for (int begin = 0; begin < pixels.size; begin += kBlock) {
-    const int left = pixels.size - begin;
-    const int size = left < kBlock ? left : kBlock;
-    for (int i = 0; i < size; ++i) block.x1[i] = pixels.x1[begin + i];
-    for (int i = 0; i < size; ++i) block.y1[i] = pixels.y1[begin + i];
-    for (int i = 0; i < size; ++i) block.x2[i] = pixels.x2[begin + i];
-    for (int i = 0; i < size; ++i) block.y2[i] = pixels.y2[begin + i];
-    for (int i = 0; i < size; ++i) block.w[i] = weights[begin + i];
-    for (int i = size; i < kBlock; ++i) {
-      block.x1[i] = block.y1[i] = block.x2[i] = block.y2[i] = block.w[i] = 0.0;
-    }
-    Linearize(kind, newton, derivatives, c, block, F, rounding2, &rows);
-    cost += SumRho(kind, c, rows.rho);
-    if (!derivatives) continue;
-    int k = 0;
-    for (int i = 0; i < 9; ++i) {
-      for (int j = i; j < 9; ++j) H[k++] += Dot(rows.row[i], rows.weighted[j]);
-    }
-    for (int i = 0; i < 9; ++i) g[i] += Dot(rows.row[i], rows.residual);
+  Accumulated sum;
+  sum.cost = 0.0;
+  for (int i = 0; i < kEntries; ++i) sum.g[i] = 0.0;
+  for (int i = 0; i < 45; ++i) sum.H[i] = 0.0;
+  int begin = 0;
+  for (; begin + kBlock <= pixels.size; begin += kBlock) {
+    AddBlock(kind, newton, derivatives, c, pixels, weights, begin, kBlock, F, rounding2, &sum);
   }
-  sums->cost = 0.5 * cost;
+  if (begin < pixels.size) {
+    AddBlock(kind, newton, derivatives, c, pixels, weights, begin, pixels.size - begin, F,
+             rounding2, &sum);
+  }
+  sums->cost = 0.5 * sum.cost;
   if (!derivatives) return;
   int k = 0;
-  for (int i = 0; i < 9; ++i) {
-    sums->g[i] = g[i];
-    for (int j = i; j < 9; ++j, ++k) sums->H[9 * i + j] = sums->H[9 * j + i] = H[k];
+  for (int i = 0; i < kEntries; ++i) {
+    sums->g[i] = sum.g[i];
+    for (int j = i; j < kEntries; ++j, ++k) sums->H[9 * i + j] = sums->H[9 * j + i] = sum.H[k];
   }
 }
 

@@ -21,11 +21,11 @@ class ParameterEquations {
  public:
   ParameterEquations(const SmallEngineOptions& options, const GroupedMatches& matches,
                   const MotionParameterization& parameterization,
-                  const std::vector<double>& weights, const PriorResiduals& prior,
+                  const PackedMatches& packed, const PriorResiduals& prior,
                   double prior_unit)
       : matches_(matches),
         parameterization_(parameterization),
-        weights_(weights),
+        packed_(packed),
         prior_(prior),
         prior_unit_(prior_unit) {
     kernel_.loss = options.loss;
@@ -39,8 +39,10 @@ class ParameterEquations {
     MotionBasis basis;
     parameterization_.Evaluate(parameters.data(), &pose, &basis);
     MotionNormalEquations sum;
-    for (const MatchGroup& group : matches_.groups()) {
-      AddNormalEquations(kernel_, matches_, group, pose, weights_.data() + group.begin, &sum);
+    for (size_t g = 0; g < packed_.groups.size(); ++g) {
+      const PixelArrays& pixels = packed_.groups[g];
+      const double* weights = packed_.weights.data() + (pixels.x1 - packed_.x1.data());
+      AddNormalEquations(kernel_, matches_, matches_.groups()[g], pixels, weights, pose, &sum);
     }
     cost = sum.cost;
     // Filled up with zeros, so that the sizes are known to the compiler.
@@ -73,7 +75,7 @@ class ParameterEquations {
  private:
   const GroupedMatches& matches_;
   const MotionParameterization& parameterization_;
-  const std::vector<double>& weights_;
+  const PackedMatches& packed_;
   const PriorResiduals& prior_;
   double prior_unit_;
   SampsonKernelOptions kernel_;
@@ -91,6 +93,29 @@ ParameterVector DampedStep(const ParameterEquations& at, double mu) {
 
 }  // namespace
 
+void PackedMatches::Set(const GroupedMatches& matches, const std::vector<double>& all_weights) {
+  for (std::vector<double>* values : {&x1, &y1, &x2, &y2, &weights}) {
+    values->resize(matches.size());
+  }
+  groups.clear();
+  int n = 0;
+  for (const MatchGroup& group : matches.groups()) {
+    const PixelArrays pixels = matches.Pixels(group);
+    const double* w = all_weights.data() + group.begin;
+    const int begin = n;
+    for (int k = 0; k < group.size; ++k) {
+      x1[n] = pixels.x1[k];
+      y1[n] = pixels.y1[k];
+      x2[n] = pixels.x2[k];
+      y2[n] = pixels.y2[k];
+      weights[n] = w[k];
+      n += w[k] != 0.0 ? 1 : 0;
+    }
+    groups.push_back({x1.data() + begin, y1.data() + begin, x2.data() + begin, y2.data() + begin,
+                      n - begin});
+  }
+}
+
 SmallEngineSummary SmallEngine::Solve(const SmallEngineOptions& options,
                                       const MotionParameterization& parameterization,
                                       const std::vector<double>& weights,
@@ -103,7 +128,8 @@ SmallEngineSummary SmallEngine::Solve(const SmallEngineOptions& options,
   num_iterations_ = 0;
   const int n = parameterization.size();
   Eigen::Map<ParameterVector> best(parameters, n);
-  ParameterEquations at(options, matches_, parameterization, weights, prior, prior_unit);
+  packed_.Set(matches_, weights);
+  ParameterEquations at(options, matches_, parameterization, packed_, prior, prior_unit);
   ParameterEquations next = at;
   at.Evaluate(best);
   if (!at.AllFinite()) return summary;

@@ -29,6 +29,15 @@ struct SmallEngineOptions {
   bool inverse_scale = false;
 };
 
+// The matches of weight above zero, group by group: what is left out takes no time.
+struct PackedMatches {
+  // `weights`: grouped order.
+  void Set(const GroupedMatches& matches, const std::vector<double>& weights);
+
+  std::vector<double> x1, y1, x2, y2, weights;
+  std::vector<PixelArrays> groups;  // into the arrays above
+};
+
 struct SmallEngineSummary {
   bool usable = false;  // finite from the start to the end
   bool converged = false;
@@ -63,6 +72,7 @@ class SmallEngine {
  private:
   const GroupedMatches& matches_;
   std::vector<double> weights_;
+  PackedMatches packed_;
   int num_iterations_ = 0;
 };
 

@@ -26,7 +26,8 @@ constexpr double kMinEigenvalue = 1e-11;
 Matrix6d GroupInformation(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
                           const double* weights) {
   MotionNormalEquations sum;
-  AddNormalEquations(SampsonKernelOptions(), matches, group, pose, weights, &sum);
+  AddNormalEquations(SampsonKernelOptions(), matches, group, matches.Pixels(group), weights, pose,
+                     &sum);
   return sum.curvature;
 }
 
