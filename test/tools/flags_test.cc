@@ -35,15 +35,18 @@ const Args kEstimationFlags = {"confidence",
                                "use_prior_in_refine"};
 
 std::map<std::string, Args> FlagsOfTools() {
-  return {{"benchmark",
-           {"json", "matches", "num_cameras", "pairs", "prior", "random_axis", "ransac", "refine",
-            "rotation_deg", "seed", "solvers", "trials"}},
-          {"compare", kEstimationFlags + Args{"by", "csv", "json", "merge", "per_pair", "solvers"}},
-          {"estimate", kEstimationFlags + Args{"csv", "g2o", "json", "solver"}},
-          {"simulate",
-           {"every", "inter_share", "match_scores", "motion", "moving_share", "noise_px",
-            "num_cameras", "num_matches", "outlier_share", "output", "pairs", "poses",
-            "rotation_axis", "rotation_deg", "seed", "threads"}}};
+  return {
+      {"benchmark",
+       {"json", "matches", "num_cameras", "pairs", "prior", "random_axis", "ransac", "refine",
+        "rotation_deg", "seed", "solvers", "trials"}},
+      {"compare", kEstimationFlags + Args{"by", "csv", "json", "merge", "per_pair", "solvers"}},
+      {"calibrate_prior", kEstimationFlags + Args{"in_place", "json", "lines", "output", "solver"}},
+      {"estimate", kEstimationFlags + Args{"csv", "drift", "g2o", "json", "kitti_trajectory",
+                                           "solver", "truth_trajectory", "tum_trajectory"}},
+      {"simulate",
+       {"every", "inter_share", "match_scores", "motion", "moving_share", "noise_px", "num_cameras",
+        "num_matches", "outlier_share", "output", "pairs", "poses", "rotation_axis", "rotation_deg",
+        "seed", "threads"}}};
 }
 
 // A run that would succeed but for what is added to it and that the files are not there, nor can be
