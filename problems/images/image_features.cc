@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
-#include <iterator>
 #include <limits>
+#include <string_view>
 #include <system_error>
 #include <tuple>
 
@@ -26,16 +26,30 @@ constexpr float kOrbScale = 1.2f;  // between two levels of the pyramid
 // Four digits say what a key point and a ratio are worth, and keep the files small.
 double Rounded(double value) { return std::round(value * 1e4) / 1e4; }
 
+// Told here, as libpng would write about it to stderr.
+bool IsCutOffPng(const std::vector<char>& bytes) {
+  constexpr std::string_view kBegin = "\x89PNG";
+  constexpr std::string_view kEnd = "IEND\xae\x42\x60\x82";
+  const std::string_view text(bytes.data(), bytes.size());
+  return text.substr(0, kBegin.size()) == kBegin && text.rfind(kEnd) == std::string_view::npos;
+}
+
 bool ReadImage(const std::string& path, cv::Mat* image, std::string* error) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     *error = PrintablePath(path) + ": cannot be opened: " + std::generic_category().message(errno);
     return false;
   }
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(file),
-                                std::istreambuf_iterator<char>()};
+  std::vector<char> bytes;
+  for (char buffer[1 << 16]; file.read(buffer, sizeof(buffer)) || file.gcount() > 0;) {
+    bytes.insert(bytes.end(), buffer, buffer + file.gcount());
+  }
   if (file.bad()) {
     *error = PrintablePath(path) + ": cannot be read";
+    return false;
+  }
+  if (IsCutOffPng(bytes)) {
+    *error = PrintablePath(path) + ": the image is cut off";
     return false;
   }
   if (!bytes.empty()) {
