@@ -40,6 +40,9 @@ std::map<std::string, Args> FlagsOfTools() {
             "rotation_deg", "seed", "solvers", "trials"}},
           {"compare", kEstimationFlags + Args{"by", "csv", "json", "merge", "per_pair", "solvers"}},
           {"estimate", kEstimationFlags + Args{"csv", "g2o", "json", "solver"}},
+          {"match",
+           {"euroc_root", "features", "first", "kitti_root", "last", "max_features", "output",
+            "ratio", "resume", "sequence", "stride", "threads"}},
           {"simulate",
            {"every", "inter_share", "match_scores", "motion", "moving_share", "noise_px",
             "num_cameras", "num_matches", "outlier_share", "output", "pairs", "poses",
@@ -50,6 +53,9 @@ std::map<std::string, Args> FlagsOfTools() {
 // made: who looks at files before the flags fails with 1 instead of 2.
 Args Minimal(const std::string& tool) {
   if (tool == "benchmark") return {"--solvers=4pt", "--trials=2"};
+  if (tool == "match") {
+    return {"--euroc_root=/proc/nonexistent/of/rigel", "--output=/proc/nonexistent/of/rigel"};
+  }
   if (tool == "simulate") return {"--output=/proc/nonexistent/of/rigel", "--pairs=1"};
   return {"--matches=/proc/nonexistent/of/rigel"};
 }
@@ -62,10 +68,17 @@ void ExpectUsageError(const std::string& tool, const Args& wrong, const std::str
   EXPECT_THAT(run.out, IsEmpty()) << run.command;
 }
 
+Args Tools() {
+  Args tools = {"benchmark", "compare", "estimate", "simulate"};
+#ifdef RIGEL_HAS_MATCH
+  tools.push_back("match");
+#endif
+  return tools;
+}
+
 class EachTool : public testing::TestWithParam<std::string> {};
 
-INSTANTIATE_TEST_SUITE_P(Tools, EachTool,
-                         testing::Values("benchmark", "compare", "estimate", "simulate"),
+INSTANTIATE_TEST_SUITE_P(Tools, EachTool, testing::ValuesIn(Tools()),
                          [](const auto& tool) { return tool.param; });
 
 TEST_P(EachTool, HelpExplainsItsOwnFlagsAndNoOthers) {
