@@ -358,11 +358,11 @@ inline int RealRoots<2>(const double* c, double* roots) {
   return 2;
 }
 
-template <>
-inline int RealRoots<3>(const double* c, double* roots) {
+// Roots of a cubic to some 1e-8 of the largest: starts of an iteration.
+inline int CubicStarts(const double* c, double* roots) {
   if (!polynomial_internal::AllFinite<3>(c)) return 0;
   if (polynomial_internal::LeadingIsZero<3>(c)) return RealRoots<2>(c, roots);
-  // Depressed form (Press et al., Numerical Recipes, section 5.6), then Newton on the original.
+  // Depressed form (Press et al., Numerical Recipes, section 5.6).
   const double inv = 1.0 / c[3];
   const double a = c[2] * inv;
   const double b = c[1] * inv;
@@ -404,7 +404,13 @@ inline int RealRoots<3>(const double* c, double* roots) {
       }
     }
   }
-  polynomial_internal::Polish<3>(c, count, roots);
+  return count;
+}
+
+template <>
+inline int RealRoots<3>(const double* c, double* roots) {
+  const int count = CubicStarts(c, roots);
+  if (count > 0) polynomial_internal::Polish<3>(c, count, roots);
   return count;
 }
 
