@@ -224,7 +224,8 @@ int Run() {
   }
 
   report.refined = estimate.refine_motion;
-  if (Chained()) ok = Chain(positions, &report) && ok;
+  // An empty shard has nothing to chain, and nothing is wrong with it.
+  if (Chained() && !report.pairs.empty()) ok = Chain(positions, &report) && ok;
   // stdout belongs to the machine if it asked for it.
   if (!StdoutIsAskedFor()) {
     std::cout << EstimateTable(report);

@@ -185,6 +185,10 @@ TEST_F(EstimateTrajectoryTest, WhatCannotBeDoneIsSaid) {
                           HasSubstr("000001.matches: length of translation not determined"),
                           "trajectory: no motion to chain"));
   EXPECT_THAT(ParseReport(none.out)["trajectories"], SizeIs(0));
+  const Outcome shard = RunTool(
+      "estimate", {"--matches=" + intra, "--shard=0/3", "--drift", "--json=" + Path("shard")});
+  EXPECT_EXIT_CODE(shard, 0);  // the shard of no files
+  EXPECT_THAT(shard.err, IsEmpty());
   const std::string full = "/proc/nonexistent/of/rigel.txt";
   const std::string inter = Simulate("inter", {"--pairs=1", "--inter_share=0.5"});
   const Outcome write = RunTool("estimate", {"--matches=" + inter, "--kitti_trajectory=" + full});
