@@ -16,6 +16,7 @@
 #include "rigel/core/rays.h"
 #include "rigel/minimal/alignment.h"
 #include "rigel/refine/chance.h"
+#include "rigel/refine/group_noise.h"
 #include "rigel/refine/inlier_selection.h"
 #include "rigel/refine/motion_parameterization.h"
 #include "rigel/refine/prior_residuals.h"
@@ -180,15 +181,15 @@ class Refiner {
   Alignment alignment_;
   std::vector<double> squared_errors_;
   std::vector<char> mask_, previous_mask_;  // grouped order
+  std::vector<double> match_weights_;       // by the noise of the camera pair; 0: no inlier
   std::vector<double> weights_;             // see SetWeights()
-  std::vector<double> fit_weights_;         // of the inliers; 0 for the rest
   int num_inliers_ = 0;
   bool judges_parallax_ = false;  // inlier_selection.h; at a minimum only
   double noise_px_ = 1.0;
   bool scale_free_ = true;
   struct ScaleQuestion {
     Pose pose;
-    std::vector<char> mask;
+    std::vector<double> weights;
     double noise_px = -1.0;
     double sigma = 0.0;
   };
@@ -232,13 +233,23 @@ void Refiner::EstimateNoise() {
   } else {
     estimated *= std::sqrt(num_inliers_ / static_cast<double>(redundancy));
   }
+  match_weights_.assign(mask_.begin(), mask_.end());
+  // A noise level that is given is that of all.
+  if (!options_.noise_px.has_value()) {
+    const std::vector<double> by_group = GroupNoiseWeights(matches_, squared_errors_, mask_);
+    for (size_t g = 0; g < by_group.size(); ++g) {
+      const MatchGroup& group = matches_.groups()[g];
+      for (int k = group.begin; k < group.begin + group.size; ++k) match_weights_[k] *= by_group[g];
+    }
+  }
   // The floor keeps noise-free problems regular.
   noise_px_ = std::max(options_.noise_px.value_or(estimated), 1e-9);
   summary_.noise_px = noise_px_;
 }
 
 Matrix6d Refiner::Information(const Pose& pose) const {
-  return WithPrior(SampsonInformation(matches_, mask_, pose) / (noise_px_ * noise_px_), pose);
+  return WithPrior(SampsonInformation(matches_, match_weights_, pose) / (noise_px_ * noise_px_),
+                   pose);
 }
 
 Matrix6d Refiner::WithPrior(Matrix6d information, const Pose& pose) const {
@@ -256,8 +267,8 @@ Matrix6d Refiner::WithPrior(Matrix6d information, const Pose& pose) const {
 double Refiner::ScaleSigma(const Pose& pose) const {
   ScaleQuestion& last = last_scale_;
   if (pose.R != last.pose.R || pose.t != last.pose.t || noise_px_ != last.noise_px ||
-      mask_ != last.mask) {
-    last = {pose, mask_, noise_px_, RelativeScaleSigma(Information(pose), pose)};
+      match_weights_ != last.weights) {
+    last = {pose, match_weights_, noise_px_, RelativeScaleSigma(Information(pose), pose)};
   }
   return last.sigma;
 }
@@ -397,10 +408,8 @@ bool Refiner::SolveSmall(const MotionParameterization& parameterization,
   // The last step is some 1e-5 standard deviations long.
   small.tolerance = 1e-12;
   std::array<double, 6> parameters = {0, 0, 0, 0, 0, 0};
-  fit_weights_.resize(weights_.size());
-  for (size_t k = 0; k < weights_.size(); ++k) fit_weights_[k] = mask_[k] ? weights_[k] : 0.0;
   const SmallEngineSummary result =
-      engine_.Solve(small, parameterization, fit_weights_, prior, noise_px_, parameters.data());
+      engine_.Solve(small, parameterization, weights_, prior, noise_px_, parameters.data());
   Pose refined;
   parameterization.Evaluate(parameters.data(), &refined, nullptr);
   if (!result.usable || !refined.AllFinite()) {
@@ -486,8 +495,9 @@ bool Refiner::SolveCeres(const MotionParameterization& parameterization,
   return true;
 }
 
-// EpipoleWeights of the inliers, fixed for a round: as a function of the motion they would draw the
-// epipoles to the matches. True if they changed by more than a tenth.
+// EpipoleWeights of the inliers and those by the noise of their camera pairs, fixed for a round: as a
+// function of the motion they would draw the epipoles to the matches. True if they changed by more
+// than a tenth.
 bool Refiner::SetWeights(const Pose& pose) {
   const std::vector<double> previous = weights_;
   const bool algebraic =
@@ -497,6 +507,7 @@ bool Refiner::SetWeights(const Pose& pose) {
   } else {
     EpipoleWeights(matches_, pose, noise_px_, &weights_);
   }
+  for (size_t k = 0; k < weights_.size(); ++k) weights_[k] *= match_weights_[k];
   bool changed = previous.size() != weights_.size();
   for (size_t k = 0; k < weights_.size() && !changed; ++k) {
     changed = mask_[k] && std::abs(weights_[k] - previous[k]) > 0.1;
@@ -534,7 +545,7 @@ bool Refiner::Iterate(Pose* pose) {
 void Refiner::FillUncertainty(const Pose& pose) {
   const Matrix6d information =
       options_.epipole_weights
-          ? WithPrior(ReliableInformation(matches_, mask_, pose, noise_px_), pose)
+          ? WithPrior(ReliableInformation(matches_, match_weights_, pose, noise_px_), pose)
           : Information(pose);
   summary_.scale_free = scale_free_;
   summary_.relative_scale_sigma = ScaleSigma(pose);

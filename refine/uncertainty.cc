@@ -35,7 +35,11 @@ Matrix6d GroupInformation(const GroupedMatches& matches, const MatchGroup& group
 
 Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<char>& mask,
                             const Pose& pose) {
-  const std::vector<double> weights(mask.begin(), mask.end());
+  return SampsonInformation(matches, std::vector<double>(mask.begin(), mask.end()), pose);
+}
+
+Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<double>& weights,
+                            const Pose& pose) {
   Matrix6d information = Matrix6d::Zero();
   for (const MatchGroup& group : matches.groups()) {
     information += GroupInformation(matches, group, pose, weights.data() + group.begin);
@@ -63,10 +67,10 @@ double ParallaxPx(const GroupedMatches& matches, int k, const Pose& pose) {
 }
 
 double MedianParallaxPx(const GroupedMatches& matches, const MatchGroup& group,
-                        const std::vector<char>& mask, const Pose& pose) {
+                        const std::vector<double>& weights, const Pose& pose) {
   std::vector<double> parallax;
   for (int k = group.begin; k < group.begin + group.size; ++k) {
-    if (mask[k]) parallax.push_back(ParallaxPx(matches, k, pose));
+    if (weights[k] != 0.0) parallax.push_back(ParallaxPx(matches, k, pose));
   }
   if (parallax.empty()) return 0.0;
   const auto middle = parallax.begin() + static_cast<long>(parallax.size() / 2);
@@ -78,6 +82,13 @@ double MedianParallaxPx(const GroupedMatches& matches, const MatchGroup& group,
 
 Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<char>& mask,
                              const Pose& pose, double noise_px) {
+  return ReliableInformation(matches, std::vector<double>(mask.begin(), mask.end()), pose,
+                             noise_px);
+}
+
+Matrix6d ReliableInformation(const GroupedMatches& matches,
+                             const std::vector<double>& match_weights, const Pose& pose,
+                             double noise_px) {
   constexpr double kShortBaseline = 0.1;  // of the longest
   constexpr double kSigmas = 5.0;
   constexpr double kParallaxNoise = 6.0;  // sigma
@@ -85,7 +96,7 @@ Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<ch
   const MotionBasis basis = FullBasis(pose, true);
   std::vector<double> weights;
   EpipoleWeights(matches, pose, noise_px, &weights);
-  for (size_t k = 0; k < weights.size(); ++k) weights[k] = mask[k] ? weights[k] : 0.0;
+  for (size_t k = 0; k < weights.size(); ++k) weights[k] *= match_weights[k];
   std::vector<Matrix6d> information(matches.groups().size());
   std::vector<double> baseline;
   Matrix6d sum = Matrix6d::Zero();
@@ -102,7 +113,7 @@ Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<ch
   }
   for (size_t g = 0; g < information.size(); ++g) {
     if (!(baseline[g] < kShortBaseline * longest)) continue;
-    if (!(MedianParallaxPx(matches, matches.groups()[g], mask, pose) < kParallaxNoise * noise_px)) {
+    if (!(MedianParallaxPx(matches, matches.groups()[g], match_weights, pose) < kParallaxNoise * noise_px)) {
       continue;
     }
     Matrix6d others;

@@ -34,8 +34,11 @@ inline constexpr double kMinMatchNoisePx = 0.1;
 // Rotation is observable if its largest standard deviation is at most this.
 inline constexpr double kRotationObservableDeg = 10.0;
 
-// J'J of the Sampson residuals of the matches with mask[k] != 0 (grouped order) at `pose`, over the
-// full six parameters; to be divided by the variance of the image noise.
+// J'J of the Sampson residuals of the matches, each times its weight (grouped order; 0 leaves it
+// out), at `pose`, over the full six parameters; to be divided by the variance of the image noise.
+Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<double>& weights,
+                            const Pose& pose);
+// Of the matches with mask[k] != 0.
 Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<char>& mask,
                             const Pose& pose);
 
@@ -54,6 +57,8 @@ void EpipoleWeights(const GroupedMatches& matches, const Pose& pose, double nois
 // the Sampson error is not linear within the noise there: matches near an epipole count by their
 // EpipoleWeights, and camera pairs whose baseline R s_i + t - s_j is so short that the other
 // matches cannot tell it from zero do not count.
+Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<double>& weights,
+                             const Pose& pose, double noise_px);
 Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<char>& mask,
                              const Pose& pose, double noise_px);
 

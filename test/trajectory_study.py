@@ -4,12 +4,12 @@
     test/trajectory_study.py [DIRECTORY [BUILD_DIR]]
 
 The directory is a clip's, by default $RIGEL_REAL_DATA/kitti_stereo_06 (exit code 77 without it),
-the build directory $RIGEL_BUILD_DIR or build/release. Chains the `stereo_odometry` comments and the `truth` lines of its match files by its own code, has
-rigel_estimate write the refined trajectory (KITTI and TUM), reads both as evo does, and compares
-the errors of the end point: of the last pose in the first frame, as KITTI's metric has it. Exit
-code 0 if the refined one's are at most 1.2 times those of the stereo odometry, in translation and
-in rotation; 1 if not, or if something is wrong. Printed, not judged: the same for the first frame
-seen from the last, where an error of rotation counts by the whole length of the clip.
+the build directory $RIGEL_BUILD_DIR or build/release. Chains the `stereo_odometry` comments and
+the `truth` lines of its match files by its own code, has rigel_estimate write the refined
+trajectory (KITTI and TUM), reads both as evo does, and compares the errors of the motion over the whole clip, X_last = R X_first + t: of t over the length of the
+path, and of R. Exit code 0 if the refined one's are at most 1.2 times those of the stereo odometry;
+1 if not, or if something is wrong. Printed, not judged: the same of the inverse motion, the last
+pose in the first frame, where the truth's error at the first frame counts by the whole length.
 Python's standard library only.
 """
 import math
@@ -113,12 +113,12 @@ def read_tum(path):
 
 
 def end_error(truth, poses):
-    """Percent of the path, degrees, percent seen from the last frame, length of the path."""
+    """Of X_last = R X_first + t: percent of the path, degrees; of its inverse: percent; path."""
     path = sum(math.dist(a[1], b[1]) for a, b in zip(truth, truth[1:]))
     backward = [apply(transposed(p[-1][0]), p[-1][1]) for p in (truth, poses)]
-    return (100 * math.dist(truth[-1][1], poses[-1][1]) / path,
+    return (100 * math.dist(*backward) / path,
             angle_deg(times(transposed(truth[-1][0]), poses[-1][0])),
-            100 * math.dist(*backward) / path, path)
+            100 * math.dist(truth[-1][1], poses[-1][1]) / path, path)
 
 
 def main():
@@ -149,8 +149,8 @@ def main():
                 fail("the files do not agree with each other")
     errors = {"stereo odometry": end_error(truth, stereo), "refined": end_error(truth, refined)}
     print(f"end point after {len(files)} pairs, {errors['refined'][3]:.1f} m")
-    for name, (percent, degrees, backward, _) in errors.items():
-        print(f"  {name:16} {percent:.3f} %  {degrees:.3f} deg   first frame from the last {backward:.3f} %")
+    for name, (percent, degrees, inverse, _) in errors.items():
+        print(f"  {name:16} {percent:.3f} %  {degrees:.3f} deg   last pose in the first frame {inverse:.3f} %")
     ratios = [errors["refined"][k] / errors["stereo odometry"][k] for k in range(3)]
     print(f"  {'ratio':16} {ratios[0]:.3f}    {ratios[1]:.3f}       (at most {MAX_RATIO})   {ratios[2]:.3f}")
     sys.exit(0 if max(ratios[:2]) <= MAX_RATIO else 1)
