@@ -6,6 +6,7 @@ packages=(
   cmake g++ ninja-build
   libceres-dev libeigen3-dev libgoogle-glog-dev libgflags-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev libbenchmark-dev
+  python3-matplotlib
 )
 
 say() { echo "install_dependencies: $*" >&2; }
