@@ -124,7 +124,7 @@ Claim Cases::Finish() const {
   claim.verdict = held_ == count_           ? Verdict::kConfirmed
                   : 4 * held_ >= 3 * count_ ? Verdict::kPartly
                                             : Verdict::kNotConfirmed;
-  if (held_ < count_) {
+  if (held_ < count_ && count_ > 1) {
     claim.why = "holds in " + std::to_string(held_) + " of " + std::to_string(count_) +
                 " cases; not in " + claim_.why;
   }

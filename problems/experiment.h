@@ -107,7 +107,8 @@ bool MakeExperimentPair(const ExperimentPlan& plan, const ExperimentPoint& point
 inline constexpr const char* kPaperLoop = "paper";
 inline constexpr const char* kRigelLoop = "rigel";
 
-// The threshold is 1.5 px, or three sigma of the image noise where that is more.
+// The threshold is three sigma of the image noise, at least 0.5 px: where it is far above the
+// noise, many hypotheses have all matches as inliers and their count says little.
 EstimateOptions ExperimentEstimate(const std::string& solver, const std::string& loop,
                                    double noise_px);
 

@@ -35,7 +35,7 @@ EstimateOptions ExperimentEstimate(const std::string& solver, const std::string&
                                    double noise_px) {
   EstimateOptions options;
   options.solver = solver;
-  options.ransac.threshold_px = std::max(options.ransac.threshold_px, 3.0 * noise_px);
+  options.ransac.threshold_px = std::max(0.5, 3.0 * noise_px);
   if (loop == kPaperLoop) {
     options.ransac.score = ScoreKind::kInlierCount;
     options.ransac.confidence = 0.99;

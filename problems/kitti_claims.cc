@@ -125,12 +125,16 @@ std::vector<Claim> KittiClaims(const ExperimentResults& results) {
   Cases lee("paper", kExperiment,
             "4pt-lee is slightly best in rotation in several drives (5 of 11)");
   const std::string lee_wins = Wins(rows, rotation, "4pt-lee", &won, &all);
-  if (all > 0) lee.Add(11 * won >= kPaperWins * all, std::to_string(won) + " of the drives");
+  if (all > 0)
+    lee.Add(11 * won >= kPaperWins * all,
+            "best in " + std::to_string(won) + " of " + std::to_string(all));
   lee.Figure("best of the four in drives: " + lee_wins);
   Cases axis("paper", kExperiment,
              "4pt-axis-approx is marginally best in direction in several drives (5 of 11)");
   const std::string axis_wins = Wins(rows, direction, "4pt-axis-approx", &won, &all);
-  if (all > 0) axis.Add(11 * won >= kPaperWins * all, std::to_string(won) + " of the drives");
+  if (all > 0)
+    axis.Add(11 * won >= kPaperWins * all,
+             "best in " + std::to_string(won) + " of " + std::to_string(all));
   axis.Figure("best of the four in drives: " + axis_wins);
 
   Cases fastest("paper", kExperiment, "4pt-axis-approx is the fastest solver in RANSAC");

@@ -1,6 +1,9 @@
 // What Rigel adds to the paper: the refinement, against the raw motions and the bound.
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "rigel/minimal/catalogue.h"
 #include "rigel/problems/claim_cases.h"
@@ -65,20 +68,27 @@ Claim OnTheBound(const ExperimentResults& results, const char* loop) {
                           "error at most 1.1 times it), loop ") +
                   loop);
   Extremes efficiency;
-  for (const ExperimentPoint& point : rows.Points()) {
-    if (!(*point.x > 0)) continue;
-    for (const std::string& solver : SolversOf(experiment)) {
-      const SolverSummary* s = rows.Find(point, solver, loop);
-      if (s == nullptr) continue;
-      for (const Quantity q : kBoth) {
+  const std::vector<ExperimentPoint> points = rows.Points();
+  for (const std::string& solver : SolversOf(experiment)) {
+    for (const Quantity q : kBoth) {
+      // Over the motions of a noise level together: fewer chance differences.
+      std::map<double, std::pair<double, double>> sums;
+      for (const ExperimentPoint& point : points) {
+        const SolverSummary* s = rows.Find(point, solver, loop);
+        if (s == nullptr) continue;
         const auto& error = StatisticsOf(*s, Stage::kRefined, q);
         const auto& bound =
             q == Quantity::kRotation ? s->bound_rotation_deg : s->bound_direction_deg;
-        if (!error || !bound || !(bound->rms > 0)) continue;
-        const double ratio = error->rms / bound->rms;
+        if (!error || !bound) continue;
+        sums[*point.x].first += error->rms * error->rms;
+        sums[*point.x].second += bound->rms * bound->rms;
+      }
+      for (const auto& [x, sum] : sums) {
+        if (!(sum.second > 0)) continue;
+        const double ratio = std::sqrt(sum.first / sum.second);
         efficiency.Add(ratio);
         cases.Add(ratio < kFlat,
-                  PointName(point) + ", " + solver + ", " + Name(q) + ": " + Number(ratio));
+                  CsvNumber(x) + " px, " + solver + ", " + Name(q) + ": " + Number(ratio));
       }
     }
   }

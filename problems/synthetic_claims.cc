@@ -100,7 +100,21 @@ Claim Crossings(const ExperimentResults& results, const char* experiment, const 
     }
     cases.Figure(motion + ": " + figures);
   }
-  return cases.Finish();
+  Claim claim = cases.Finish();
+  if (claim.verdict == Verdict::kPartly || claim.verdict == Verdict::kNotConfirmed) {
+    Value low, high;
+    for (const std::string& motion : kMotions) {
+      const Value least = rows.Least({motion, "", 0.0}, kSixDof, Quantity::kRotation);
+      if (!least) continue;
+      low = std::min(low.value_or(*least), *least);
+      high = std::max(high.value_or(*least), *least);
+    }
+    claim.why +=
+        ". A vertical solver's rotation is off by the prior's error at least, so it crosses "
+        "near the best 6-DoF error, which is " +
+        Range(low, high) + " deg here";
+  }
+  return claim;
 }
 
 std::vector<Claim> ImageNoiseClaims(const ExperimentResults& results) {

@@ -30,7 +30,7 @@ DEFINE_int32(every, 0, "kitti-motions takes each n-th motion; 0: 20, with --quic
 DEFINE_bool(resume, false, "continue an interrupted run of the same flags in --output");
 DEFINE_bool(overwrite, false, "begin anew where --output has results");
 DEFINE_bool(figures, true, "draw figures with rigel_plot.py (python3-matplotlib)");
-DEFINE_string(html, "", "write tables and figures of the run to this one file, self-contained");
+DEFINE_string(html, "", "write tables and figures of the run to this one file, too; it needs no other file");
 DEFINE_bool(no_times, false, "leave times out, so that two runs give the same files");
 DEFINE_uint64(seed, 1, "the same seed makes the same frame pairs");
 DEFINE_int32(threads, 0, "pairs worked on at a time; 0: all cores. Results do not depend on it");
@@ -180,7 +180,6 @@ bool DrawFigures() {
   if (!FLAGS_figures && FLAGS_html.empty()) return true;
   std::vector<std::string> arguments = {FLAGS_output, "--output=" + OutputPath("figures")};
   if (!FLAGS_html.empty()) arguments.push_back("--html=" + FLAGS_html);
-  if (!FLAGS_figures) arguments.push_back("--no-files");
   std::string error;
   const PlotOutcome outcome = RunPlotScript(arguments, &error);
   if (outcome == PlotOutcome::kDone) return true;
