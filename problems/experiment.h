@@ -66,7 +66,7 @@ struct ExperimentOptions {
   int every = 0;      // of the motions of a drive take each n-th; 0: kQuickEvery or kEvery
 };
 
-inline constexpr int kQuickPairs = 40;
+inline constexpr int kQuickPairs = 30;
 inline constexpr int kFullPairs = 500;
 inline constexpr int kQuickEvery = 100;
 inline constexpr int kEvery = 20;

@@ -22,7 +22,7 @@ DEFINE_string(name, "", "names of experiments, comma separated, or all; --list s
 DEFINE_bool(list, false, "print the experiments, one a line, and end");
 DEFINE_string(output, "", "directory that gets the results; made if missing");
 DEFINE_bool(quick, false, "few pairs and a coarse grid: minutes instead of hours");
-DEFINE_int32(pairs, 0, "frame pairs of each point; 0: 500, with --quick 40");
+DEFINE_int32(pairs, 0, "frame pairs of each point; 0: 500, with --quick 30");
 DEFINE_string(poses, "",
               "directory of KITTI odometry poses (00.txt, ...), which kitti-motions needs");
 DEFINE_string(kitti_root, "", "directory of the KITTI odometry data: its poses are --poses");
