@@ -173,10 +173,8 @@ bool WriteResults(const std::vector<ExperimentPlan>& plans,
   return FlushStdout() && ok;
 }
 
-// Where they were not asked for by name, that they cannot be drawn fails nothing.
+// That they cannot be drawn fails nothing but --html.
 bool DrawFigures() {
-  const std::vector<std::string> given = GivenFlags();
-  const bool asked = std::find(given.begin(), given.end(), "figures") != given.end();
   if (!FLAGS_figures && FLAGS_html.empty()) return true;
   std::vector<std::string> arguments = {FLAGS_output, "--output=" + OutputPath("figures")};
   if (!FLAGS_html.empty()) arguments.push_back("--html=" + FLAGS_html);
@@ -185,7 +183,7 @@ bool DrawFigures() {
   if (outcome == PlotOutcome::kDone) return true;
   std::cerr << error << "\nThe results are in " << PrintablePath(FLAGS_output)
             << "; once that is mended, draw the figures with\n  " << PlotCommand(arguments) << "\n";
-  return outcome == PlotOutcome::kUnavailable && !asked && FLAGS_html.empty();
+  return outcome == PlotOutcome::kUnavailable && FLAGS_html.empty();
 }
 
 int Run() {
