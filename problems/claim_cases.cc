@@ -128,6 +128,7 @@ Claim Cases::Finish() const {
     claim.why = "holds in " + std::to_string(held_) + " of " + std::to_string(count_) +
                 " cases; not in " + claim_.why;
   }
+  if (held_ < count_ && !reason_.empty()) claim.why += ". " + reason_;
   return claim;
 }
 

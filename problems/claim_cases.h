@@ -64,11 +64,15 @@ class Cases {
 
   void Figure(const std::string& text);
 
+  // What explains it where it does not hold.
+  void Reason(const std::string& text) { reason_ = text; }
+
   // Not measured if there was no case.
   Claim Finish() const;
 
  private:
   Claim claim_;
+  std::string reason_;
   int count_ = 0;
   int held_ = 0;
   int num_shown_ = 0;

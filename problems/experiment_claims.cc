@@ -28,8 +28,10 @@ std::vector<Claim> EvaluateClaims(const ExperimentResults& results) {
   return all;
 }
 
-std::string ClaimsMarkdown(const std::vector<Claim>& claims) {
+std::string ClaimsMarkdown(const std::string& about, const std::vector<Claim>& claims) {
   std::string text =
+      "<!-- Written by rigel_experiment; do not edit. -->\n\n# Claims\n\n" + about + "\n\n";
+  text +=
       "| of | experiment | claim | verdict | figures | where not |\n"
       "| --- | --- | --- | --- | --- | --- |\n";
   for (const Claim& claim : claims) {

@@ -34,8 +34,8 @@ struct Claim {
 // All claims, measured or not, in a fixed order. The paper's are of the raw motions in its loop.
 std::vector<Claim> EvaluateClaims(const ExperimentResults& results);
 
-// Markdown table; JSON ("rigel-claims 1").
-std::string ClaimsMarkdown(const std::vector<Claim>& claims);
+// Markdown, with `about`, a paragraph on the run, above the table; JSON ("rigel-claims 1").
+std::string ClaimsMarkdown(const std::string& about, const std::vector<Claim>& claims);
 std::string ClaimsJson(const std::vector<Claim>& claims);
 
 }  // namespace rigel

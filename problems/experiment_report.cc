@@ -156,6 +156,18 @@ std::string ExperimentTable(const ExperimentPlan& plan, const std::vector<Experi
       [](const S& s) { return s.refined_direction_deg; },
       [](const S& s) { return s.bound_direction_deg; }, 1.0);
   if (!direction.empty()) text += "\n" + direction;
+  if (plan.spec->variable == ExperimentVariable::kNone) {
+    text += "\n" + QuantityTable(
+                       plan, rows, "refined: rotation error [deg]",
+                       [](const S& s) { return s.refined_rotation_deg; },
+                       [](const S& s) { return s.refined_rotation_deg; },
+                       [](const S& s) { return s.bound_rotation_deg; }, 1.0);
+    text += "\n" + QuantityTable(
+                       plan, rows, "refined: translation direction error [deg]",
+                       [](const S& s) { return s.refined_direction_deg; },
+                       [](const S& s) { return s.refined_direction_deg; },
+                       [](const S& s) { return s.bound_direction_deg; }, 1.0);
+  }
   // Elsewhere it is observable without noise at most.
   if (plan.spec->variable != ExperimentVariable::kInterShare) return text;
   const std::string scale = QuantityTable(

@@ -11,7 +11,8 @@
 namespace rigel {
 
 // Median raw errors of all solvers in the paper's loop, one row a point, beside the refined one (of
-// the solver in the middle) and the bound: rotation, direction and, for inter-share, scale.
+// the solver in the middle) and the bound: rotation, direction and, for inter-share, scale. For the
+// motions of drives the refined errors of all solvers, too.
 // 100 columns at most.
 std::string ExperimentTable(const ExperimentPlan& plan, const std::vector<ExperimentRow>& rows);
 

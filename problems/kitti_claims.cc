@@ -128,6 +128,7 @@ std::vector<Claim> KittiClaims(const ExperimentResults& results) {
   if (all > 0)
     lee.Add(11 * won >= kPaperWins * all,
             "best in " + std::to_string(won) + " of " + std::to_string(all));
+  lee.Reason("The priors are exact here, an IMU's in the paper");
   lee.Figure("best of the four in drives: " + lee_wins);
   Cases axis("paper", kExperiment,
              "4pt-axis-approx is marginally best in direction in several drives (5 of 11)");
@@ -135,6 +136,7 @@ std::vector<Claim> KittiClaims(const ExperimentResults& results) {
   if (all > 0)
     axis.Add(11 * won >= kPaperWins * all,
              "best in " + std::to_string(won) + " of " + std::to_string(all));
+  axis.Reason("The priors are exact here, an IMU's in the paper");
   axis.Figure("best of the four in drives: " + axis_wins);
 
   Cases fastest("paper", kExperiment, "4pt-axis-approx is the fastest solver in RANSAC");
@@ -150,7 +152,6 @@ std::vector<Claim> KittiClaims(const ExperimentResults& results) {
     }
   }
   fastest.Figure("mean ms: " + TimeRanking(rows));
-  linear_fast.Figure("17pt-li " + Number(MeanTime(rows, "17pt-li")) + " ms");
 
   Cases limit("paper", kExperiment, "the 6-DoF solvers reach the limit of iterations");
   std::string iterations;
@@ -172,6 +173,7 @@ std::vector<Claim> KittiClaims(const ExperimentResults& results) {
     }
   }
   limit.Figure("iterations: " + iterations);
+  linear_fast.Figure("mean ms as above; iterations: " + iterations);
   return {four.Finish(),    translation.Finish(), lee.Finish(),
           axis.Finish(),    three.Finish(),       three_dir.Finish(),
           fastest.Finish(), linear_fast.Finish(), limit.Finish()};

@@ -30,7 +30,8 @@ DEFINE_int32(every, 0, "kitti-motions takes each n-th motion; 0: 20, with --quic
 DEFINE_bool(resume, false, "continue an interrupted run of the same flags in --output");
 DEFINE_bool(overwrite, false, "begin anew where --output has results");
 DEFINE_bool(figures, true, "draw figures with rigel_plot.py (python3-matplotlib)");
-DEFINE_string(html, "", "write tables and figures of the run to this one file, too; it needs no other file");
+DEFINE_string(html, "",
+              "write tables and figures of the run to this one file, too; it needs no other file");
 DEFINE_bool(no_times, false, "leave times out, so that two runs give the same files");
 DEFINE_uint64(seed, 1, "the same seed makes the same frame pairs");
 DEFINE_int32(threads, 0, "pairs worked on at a time; 0: all cores. Results do not depend on it");
@@ -140,6 +141,23 @@ void PrintClaims(const std::vector<Claim>& claims) {
   }
 }
 
+// What claims.md says of the run.
+std::string AboutRun(const std::vector<ExperimentPlan>& plans) {
+  const ExperimentOptions options = plans.front().options;
+  std::string text =
+      "Each claim of the paper's experiments, and what Rigel adds, held against a run of "
+      "`rigel_experiment` (" +
+      std::to_string(options.pairs) + " pairs a point, " +
+      (options.quick ? "the coarse grid of --quick" : "the full grid") + ", seed " +
+      std::to_string(options.seed) + ", every " + std::to_string(options.every) +
+      "th motion of the drives). ";
+  return text +
+         "The paper's claims are of the raw motions where the largest inlier count wins; errors "
+         "are "
+         "medians in degrees. Confirmed: in all cases; partly: in three of four. \"Best\" and "
+         "\"beat\" are taken to the last digit, and medians of few pairs differ by chance.";
+}
+
 // Tables to stdout, all else to files.
 bool WriteResults(const std::vector<ExperimentPlan>& plans,
                   const std::vector<ExperimentStore>& stores) {
@@ -166,7 +184,7 @@ bool WriteResults(const std::vector<ExperimentPlan>& plans,
                claims.end());
   PrintClaims(claims);
   std::string error;
-  if (!ReplaceFile(OutputPath("claims.md"), ClaimsMarkdown(claims), &error) ||
+  if (!ReplaceFile(OutputPath("claims.md"), ClaimsMarkdown(AboutRun(plans), claims), &error) ||
       !ReplaceFile(OutputPath("claims.json"), ClaimsJson(claims), &error)) {
     ok = Failed(error);
   }

@@ -52,7 +52,7 @@ STYLES = {
     "3pt-approx-polished": (ORANGE, "^"), "4pt": (BLACK, "+"), "4pt-axis": (GREY, "x"),
     "3pt": (BLACK, "+"),
 }
-SPARE = [BLUE, RED, GREEN, PINK, ORANGE, SKY, BLACK, GREY]
+SPARE = [BLACK, BLUE, GREEN, SKY, ORANGE, PINK, RED, GREY]
 
 METRICS = [("rotation_deg", r"rotation error [deg]", 1.0),
            ("translation_dir_deg", r"translation direction error [deg]", 1.0)]
@@ -66,8 +66,16 @@ class Bad(Exception):
     """A message for the user."""
 
 
-def style(solver, number=0):
-    return STYLES.get(solver, (SPARE[number % len(SPARE)], "o"))
+def styles_of(solvers):
+    """Colour and marker of each solver of a figure: its own, or the first colour that is free."""
+    styles = {}
+    for number, solver in enumerate(solvers):
+        color, marker = STYLES.get(solver, (SPARE[number % len(SPARE)], "o"))
+        taken = {c for c, _ in styles.values()}
+        if color in taken:
+            color = next((c for c in SPARE if c not in taken), color)
+        styles[solver] = (color, marker)
+    return styles
 
 
 def unique(items):
@@ -85,8 +93,8 @@ def new_figure(rows, columns, width, height):
 
 
 def solver_handles(solvers, line="-"):
-    return [Line2D([], [], color=style(s, k)[0], marker=style(s, k)[1], markersize=5, lw=1.2,
-                   ls=line, label=s) for k, s in enumerate(solvers)]
+    return [Line2D([], [], color=color, marker=marker, markersize=5, lw=1.2, ls=line, label=solver)
+            for solver, (color, marker) in styles_of(solvers).items()]
 
 
 def stage_handles(bound):
@@ -114,8 +122,7 @@ def legends(figure, solvers, bound, top):
 def draw_curves(axis, rows, solvers, metric, factor):
     """Raw dashed, refined solid, bound dotted. True if there is a bound."""
     bound = {}
-    for number, solver in enumerate(solvers):
-        color, marker = style(solver, number)
+    for solver, (color, marker) in styles_of(solvers).items():
         mine = [r for r in rows if r["solver"] == solver]
         for stage, line, width, size in (("raw", "--", 1.1, 4.5), ("refined", "-", 1.4, 3)):
             points = [(r["x"], median(r, stage, metric, factor)) for r in mine]
@@ -201,8 +208,7 @@ def plot_sequences(report, loop):
             if k % 2:
                 axis.axvspan(k - 0.5, k + 0.5, color="#f2f2f2", lw=0)
             bounds = []
-            for number, solver in enumerate(solvers):
-                color, marker = style(solver, number)
+            for number, (solver, (color, marker)) in enumerate(styles_of(solvers).items()):
                 x = k + 0.8 * ((number + 0.5) / len(solvers) - 0.5)
                 for row in rows:
                     if row["sequence"] != sequence or row["solver"] != solver:
@@ -254,7 +260,7 @@ def bars(solvers, series, label, title, colors=None):
             if value is None or not value > 0:
                 continue
             y = k + height * (n - (len(series) - 1) / 2)
-            color = style(solver, k)[0]
+            color = STYLES.get(solver, (GREY, ""))[0]
             axis.barh(y, value, height=0.92 * height, color=faded(color, fades[n % len(fades)]),
                       edgecolor=color, lw=0.8)
             axis.text(value * 1.04, y, f"{value:.3g}", va="center", fontsize=7.5)
@@ -323,28 +329,25 @@ def plot_report(report, stem):
         return figures
     figure, axes = new_figure(1, 2, 9, 4.6)
     for axis, (metric, label, factor) in zip(axes[0], METRICS):
-        for number, solver in enumerate(solvers):
+        for solver, (color, marker) in styles_of(solvers).items():
             for stage, line in (("raw", "--"), ("refined", "-")):
                 values = [p["solvers"].get(solver, {}).get(stage, {}).get(metric) for p in pairs]
                 values = sorted(factor * v for v in values if v is not None and v > 0)
                 # A pair without an estimate is never within any error.
                 shares = [100.0 * (k + 1) / len(pairs) for k in range(len(values))]
                 if values:
-                    axis.step(values, shares, where="post", color=style(solver, number)[0],
-                              ls=line, lw=1.3)
+                    axis.step(values, shares, where="post", color=color, ls=line, lw=1.3,
+                              marker=marker, markersize=4.5, markevery=max(1, len(values) // 6),
+                              markerfacecolor="none" if stage == "raw" else color)
         axis.set_xscale("log")
+        plain_ticks(axis.xaxis)
         axis.set_ylim(0, 101)
         axis.grid(True, color="#dddddd", lw=0.6)
         axis.tick_params(labelsize=8)
         axis.set_xlabel(label, fontsize=9)
     axes[0][0].set_ylabel("pairs within the error [%]", fontsize=9)
-    handles = [Line2D([], [], color=style(s, k)[0], lw=2, label=s) for k, s in enumerate(solvers)]
-    columns = 5
-    figure.legend(handles=handles + stage_handles(False), loc="upper center", ncol=columns,
-                  bbox_to_anchor=(0.5, 0.99), frameon=False, fontsize=8.5)
-    lines = math.ceil((len(handles) + 2) / columns)
-    figure.subplots_adjust(left=0.07, right=0.985, bottom=0.11, top=0.97 - 0.052 * lines,
-                           wspace=0.14)
+    top = legends(figure, solvers, False, 0.99)
+    figure.subplots_adjust(left=0.07, right=0.985, bottom=0.11, top=top - 0.01, wspace=0.14)
     return [(stem + "-cumulative", figure)]
 
 
@@ -419,9 +422,12 @@ def save(figure, directory, name):
     plt.close(figure)
     with open(paths[1], encoding="utf-8") as file:
         text = file.read()
-    # A hundredth of a point is fine enough, and half the size.
+    # A hundredth of a point is fine enough; half the size.
+    text = re.sub(r"(\d\.\d\d)\d+", r"\1", text)
+    text = re.sub(r"(<use [^>]*); stroke-linejoin: miter", r"\1", text)
+    text = re.sub(r"\n +", "\n", text)
     with open(paths[1], "w", encoding="utf-8") as file:
-        file.write(re.sub(r"(\d\.\d\d)\d+", r"\1", text))
+        file.write(text)
     return paths
 
 

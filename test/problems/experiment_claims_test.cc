@@ -187,9 +187,10 @@ TEST(ExperimentClaims, KittiRankings) {
 
 TEST(ExperimentClaims, ARowPerClaim) {
   const std::vector<Claim> claims = EvaluateClaims({});
-  const std::string markdown = ClaimsMarkdown(claims);
+  const std::string markdown = ClaimsMarkdown("About.", claims);
   EXPECT_EQ(static_cast<size_t>(std::count(markdown.begin(), markdown.end(), '\n')),
-            claims.size() + 2);
+            claims.size() + 8)
+      << "a comment, a title, the paragraph and the head of the table";
   EXPECT_THAT(ClaimsJson(claims), HasSubstr("\"format\": \"rigel-claims 1\""));
 }
 
