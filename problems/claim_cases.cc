@@ -28,8 +28,9 @@ std::string Range(Value low, Value high) {
   return a == b ? a : a + " to " + b;
 }
 
-std::string Joined(const std::string& a, const std::string& separator, const std::string& b) {
-  return a.empty() ? b : a + separator + b;
+void AppendItem(const std::string& separator, const std::string& item, std::string* list) {
+  if (!list->empty()) *list += separator;
+  *list += item;
 }
 
 std::string PointName(const ExperimentPoint& point) {
@@ -104,7 +105,7 @@ Cases::Cases(const char* source, const char* experiment, const std::string& text
 void Cases::Add(bool holds, const std::string& what) {
   ++count_;
   if (holds) ++held_;
-  if (!holds && num_shown_++ < 2) claim_.why = Joined(claim_.why, "; ", what);
+  if (!holds && num_shown_++ < 2) AppendItem("; ", what, &claim_.why);
 }
 
 void Cases::Less(const std::string& where, Value a, const std::string& a_name, Value b,
@@ -113,7 +114,7 @@ void Cases::Less(const std::string& where, Value a, const std::string& a_name, V
   Add(*a < *b, where + ": " + a_name + " " + Number(a) + ", " + b_name + " " + Number(b));
 }
 
-void Cases::Figure(const std::string& text) { claim_.figures = Joined(claim_.figures, "; ", text); }
+void Cases::Figure(const std::string& text) { AppendItem("; ", text, &claim_.figures); }
 
 Claim Cases::Finish() const {
   Claim claim = claim_;

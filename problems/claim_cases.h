@@ -24,7 +24,7 @@ const std::optional<Statistics>& StatisticsOf(const SolverSummary& summary, Stag
 
 std::string Number(Value value);           // three digits after the point, two from 1 on; "-"
 std::string Range(Value low, Value high);  // "1.20 to 3.40"
-std::string Joined(const std::string& a, const std::string& separator, const std::string& b);
+void AppendItem(const std::string& separator, const std::string& item, std::string* list);
 std::string PointName(const ExperimentPoint& point);  // "forward at 0.5", "00"
 
 // The rows of one experiment; none if it is not among the results, which must outlive it.

@@ -47,7 +47,7 @@ std::string Ranking(const Rows& rows, Quantity q) {
   std::sort(order.begin(), order.end());
   std::string text;
   for (const auto& [value, solver] : order) {
-    text = Joined(text, ", ", solver + " " + Number(value));
+    AppendItem(", ", solver + " " + Number(value), &text);
   }
   return text;
 }
@@ -60,7 +60,7 @@ std::string TimeRanking(const Rows& rows) {
   std::sort(order.begin(), order.end());
   std::string text;
   for (const auto& [value, solver] : order) {
-    text = Joined(text, ", ", solver + " " + FormatNumber(value, 2));
+    AppendItem(", ", solver + " " + FormatNumber(value, 2), &text);
   }
   return text;
 }
@@ -80,7 +80,7 @@ std::string Wins(const Rows& rows, Quantity q, const std::string& wanted, int* w
     }
     *all = std::max(*all, sequences);
     if (solver == wanted) *won = wins;
-    text = Joined(text, ", ", solver + " " + std::to_string(wins));
+    AppendItem(", ", solver + " " + std::to_string(wins), &text);
   }
   return text;
 }
@@ -169,7 +169,7 @@ std::vector<Claim> KittiClaims(const ExperimentResults& results) {
       }
     }
     if (const auto s = ComputeStatistics(values)) {
-      iterations = Joined(iterations, ", ", solver + " " + FormatNumber(s->median, 0));
+      AppendItem(", ", solver + " " + FormatNumber(s->median, 0), &iterations);
     }
   }
   limit.Figure("iterations: " + iterations);

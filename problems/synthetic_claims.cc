@@ -88,11 +88,12 @@ std::string Bias(const Rows& rows, const Names& solver, const Names& others, con
     const ExperimentPoint exact{motion, "", 0.0};
     std::string values;
     for (const Quantity q : kBoth) {
-      values = Joined(values, " and ",
-                      Number(rows.Largest(exact, solver, q)) + " (" +
-                          Number(rows.Largest(exact, others, q)) + ")");
+      AppendItem(" and ",
+                 Number(rows.Largest(exact, solver, q)) + " (" +
+                     Number(rows.Largest(exact, others, q)) + ")",
+                 &values);
     }
-    text = Joined(text, ", ", motion + " " + values);
+    AppendItem(", ", motion + " " + values, &text);
   }
   return "Without noise the linearization of " + solver.front() + " (" + what +
          ") leaves, in rotation and direction: " + text + " deg";
@@ -109,7 +110,7 @@ Claim Crossings(const ExperimentResults& results, const char* experiment, const 
     for (const std::string& solver : kFourPoint) {
       const Value x = Crossing(rows, motion, solver);
       if (!x) continue;
-      figures = Joined(figures, ", ", solver + " " + written(*x));
+      AppendItem(", ", solver + " " + written(*x), &figures);
       // The paper's "near" is read from figures with steps of a tenth.
       if (solver != "4pt-axis-approx") {
         cases.Add(*x > 0.15 && *x < 0.45, motion + ", " + solver + ": " + written(*x));

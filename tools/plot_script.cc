@@ -2,6 +2,7 @@
 
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -9,8 +10,6 @@
 #include <system_error>
 
 #include "rigel/problems/match_file.h"
-
-extern char** environ;
 
 namespace rigel {
 namespace {
@@ -44,6 +43,7 @@ PlotOutcome RunPlotScript(const std::vector<std::string>& arguments, std::string
   std::vector<std::string> words = {"python3", script};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   pid_t child = 0;

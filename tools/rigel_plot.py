@@ -364,7 +364,7 @@ def plot_benchmark(report, stem):
 
 
 def read_trajectory(path):
-    """Positions (x, z) seen from above: +x right, +z ahead; TUM's x and y if its z hardly varies."""
+    """Positions (x, y, z) of a file in KITTI's or TUM's format."""
     try:
         with open(path, encoding="utf-8") as file:
             lines = [(n, l.split()) for n, l in enumerate(file, 1)
@@ -414,10 +414,10 @@ def plot_trajectory(estimate_path, truth_path):
     return [("trajectory", figure)]
 
 
-def save(figure, directory, name):
+def save(figure, directory, name, dpi):
     """Writes both files; returns their paths, the SVG's last."""
     paths = [os.path.join(directory, f"{name}.{kind}") for kind in ("png", "svg")]
-    figure.savefig(paths[0], dpi=130, metadata={"Software": None})
+    figure.savefig(paths[0], dpi=dpi, metadata={"Software": None})
     figure.savefig(paths[1], metadata={"Date": None, "Creator": "rigel_plot.py"})
     plt.close(figure)
     with open(paths[1], encoding="utf-8") as file:
@@ -532,7 +532,7 @@ def run(arguments):
         part = [f"<h2>{html.escape(title)}</h2>"]
         for name, figure in figures:
             try:
-                paths = save(figure, directory, name)
+                paths = save(figure, directory, name, arguments.dpi)
             except OSError as error:
                 raise Bad(f"{directory}: cannot be written: {error}") from error
             written += 1
@@ -565,9 +565,12 @@ def main():
     parser.add_argument("inputs", nargs="*", metavar="INPUT", help="reports or directories")
     parser.add_argument("--output", default="figures", help="directory of the figures; made")
     parser.add_argument("--html", help="join tables and figures in this one file")
+    parser.add_argument("--dpi", type=int, default=130, help="resolution of the PNG files")
     parser.add_argument("--estimate", help="trajectory to draw")
     parser.add_argument("--truth", help="true trajectory to draw")
     arguments = parser.parse_args()
+    if not 10 <= arguments.dpi <= 1200:
+        parser.error("--dpi: expected 10 to 1200")
     if not arguments.inputs and not arguments.estimate and not arguments.truth:
         parser.error("nothing to draw: name a report, a directory or --estimate")
     plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "rigel", "font.size": 9,
