@@ -27,6 +27,7 @@ try:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     from matplotlib.lines import Line2D
+    from PIL import Image
 except ImportError:
     # Debian's matplotlib is with Debian's python, which need not come first in PATH.
     debian = "/usr/bin/python3"
@@ -420,6 +421,9 @@ def save(figure, directory, name, dpi):
     figure.savefig(paths[0], dpi=dpi, metadata={"Software": None})
     figure.savefig(paths[1], metadata={"Date": None, "Creator": "rigel_plot.py"})
     plt.close(figure)
+    # 128 colours are enough for lines and letters; a third of the size.
+    with Image.open(paths[0]) as image:
+        image.convert("RGB").quantize(128).save(paths[0], optimize=True)
     with open(paths[1], encoding="utf-8") as file:
         text = file.read()
     # A hundredth of a point is fine enough; half the size.
