@@ -6,13 +6,12 @@ bool FramePair::IsValid(std::string* error) const {
   if (!rig.IsValid(error)) return false;
   for (size_t k = 0; k < matches.size(); ++k) {
     const Match& m = matches[k];
-    const std::string name = "match " + std::to_string(k);
     if (m.camera1 < 0 || m.camera1 >= rig.size() || m.camera2 < 0 || m.camera2 >= rig.size()) {
-      *error = name + ": names a camera outside 0.." + std::to_string(rig.size() - 1);
+      *error = "match " + std::to_string(k) + ": names a camera outside 0.." + std::to_string(rig.size() - 1);
       return false;
     }
     if (!m.pixel1.allFinite() || !m.pixel2.allFinite()) {
-      *error = name + ": a pixel is not finite";
+      *error = "match " + std::to_string(k) + ": a pixel is not finite";
       return false;
     }
   }

@@ -17,11 +17,13 @@ void DepthSystem<kModel>::SetReference(const PreparedMatches& matches, const int
   // The reference of largest parallax: parallel rays would leave d1, d2 undetermined, and the
   // first-order bias grows with the depths.
   int best = 0;
+  double largest = matches[sample[0]].parallax2;
   bool all_intra = matches[sample[0]].camera1 == matches[sample[0]].camera2;
   for (int k = 1; k < sample_size; ++k) {
     const PreparedMatch& m = matches[sample[k]];
-    if (m.parallax2 > matches[sample[best]].parallax2) best = k;
-    all_intra = all_intra && m.camera1 == m.camera2;
+    best = m.parallax2 > largest ? k : best;
+    largest = std::max(largest, m.parallax2);
+    all_intra &= m.camera1 == m.camera2;
   }
   reference_ = &matches[sample[best]];
   deflated_ = all_intra && matches.alignment().contains_identity;
@@ -182,21 +184,19 @@ void DepthSystem<kModel>::NullVector(double z, double v[3]) const {
     return;
   }
   // The cross product of the best conditioned pair of rows.
-  double best = -1.0;
+  // All are made and the best is picked by its index: which it is cannot be predicted.
+  double cross[3][3], norm2[3];
   for (int r = 0; r < 3; ++r) {
     const double* a = F[r];
     const double* b = F[(r + 1) % 3];
-    const double x = a[1] * b[2] - a[2] * b[1];
-    const double y = a[2] * b[0] - a[0] * b[2];
-    const double w = a[0] * b[1] - a[1] * b[0];
-    const double norm2 = x * x + y * y + w * w;
-    if (norm2 > best) {
-      best = norm2;
-      v[0] = x;
-      v[1] = y;
-      v[2] = w;
-    }
+    cross[r][0] = a[1] * b[2] - a[2] * b[1];
+    cross[r][1] = a[2] * b[0] - a[0] * b[2];
+    cross[r][2] = a[0] * b[1] - a[1] * b[0];
+    norm2[r] = cross[r][0] * cross[r][0] + cross[r][1] * cross[r][1] + cross[r][2] * cross[r][2];
   }
+  const int first = norm2[1] > norm2[0] ? 1 : 0;
+  const int best = norm2[2] > norm2[first] ? 2 : first;
+  for (int c = 0; c < 3; ++c) v[c] = cross[best][c];
 }
 
 template <RotationModel kModel>

@@ -11,11 +11,11 @@ namespace {
 constexpr double kNegligible = 1e-12;
 
 bool SameCentres(const PreparedMatch& a, const PreparedMatch& b) {
-  double difference = 0.0;
+  // Most differ in the first coordinate.
   for (int c = 0; c < 3; ++c) {
-    difference += std::abs(a.s1[c] - b.s1[c]) + std::abs(a.s2[c] - b.s2[c]);
+    if (!(std::abs(a.s1[c] - b.s1[c]) + std::abs(a.s2[c] - b.s2[c]) < kNegligible)) return false;
   }
-  return difference < kNegligible;
+  return true;
 }
 
 }  // namespace
@@ -28,7 +28,7 @@ DirectSample::DirectSample(const PreparedMatches& matches, const int* sample) : 
     const PreparedMatch& m = matches[sample[r]];
     if (m.parallax2 > reference_->parallax2) reference_ = &m;
     all_intra = all_intra && m.camera1 == m.camera2;
-    central_ = central_ && SameCentres(m, matches[sample[0]]);
+    central_ = central_ && (r == 0 || SameCentres(m, matches[sample[0]]));
     rows_[r] = {m.X0, m.Xc, m.Xs, m.Yc, m.Ys, m.Z0, m.K0, m.Kc, m.Ks};
   }
   deflated_ = all_intra && !central_ && matches.alignment().contains_identity;
@@ -55,11 +55,11 @@ void DirectSample::AddSolution(double z, Solutions* solutions) const {
   double v[4];
   NullVector4(m, v);
   const Eigen::Vector3d direction(v[0], v[1], v[2]);
-  const double norm = direction.norm();
-  if (!(norm > 0.0) || !std::isfinite(norm)) return;
+  const double norm2 = direction.squaredNorm();
+  if (!(norm2 > 0.0) || !std::isfinite(norm2)) return;
 
-  const bool has_scale =
-      !central_ && std::abs(v[3]) > kNegligible * norm && (!deflated_ || std::abs(z) > 1e-8);
+  const bool has_scale = !central_ && v[3] * v[3] > kNegligible * kNegligible * norm2 &&
+                         (!deflated_ || std::abs(z) > 1e-8);
   Eigen::Vector3d t;
   if (has_scale) {
     t = direction * ((deflated_ ? z : 1.0) / v[3]);
@@ -74,7 +74,8 @@ void DirectSample::AddSolution(double z, Solutions* solutions) const {
 
 void NullVector4(const double m[4][4], double v[4]) {
   // Cofactors of each row from the 2x2 minors of the two other pairs of rows.
-  double best = -1.0;
+  // All four are made and the best is picked by its index: which it is cannot be predicted.
+  double cofactors[4][4], norm2[4];
   for (int half = 0; half < 2; ++half) {
     const double* a = m[half == 0 ? 2 : 0];
     const double* b = m[half == 0 ? 3 : 1];
@@ -86,21 +87,19 @@ void NullVector4(const double m[4][4], double v[4]) {
     const double m23 = a[2] * b[3] - a[3] * b[2];
     for (int k = 0; k < 2; ++k) {
       const double* p = m[2 * half + k];
-      const double x = p[1] * m23 - p[2] * m13 + p[3] * m12;
-      const double y = -p[0] * m23 + p[2] * m03 - p[3] * m02;
-      const double z = p[0] * m13 - p[1] * m03 + p[3] * m01;
-      const double w = -p[0] * m12 + p[1] * m02 - p[2] * m01;
-      const double norm2 = x * x + y * y + z * z + w * w;
-      if (norm2 > best) {
-        best = norm2;
-        v[0] = x;
-        v[1] = y;
-        v[2] = z;
-        v[3] = w;
-      }
+      double* c = cofactors[2 * half + k];
+      c[0] = p[1] * m23 - p[2] * m13 + p[3] * m12;
+      c[1] = -p[0] * m23 + p[2] * m03 - p[3] * m02;
+      c[2] = p[0] * m13 - p[1] * m03 + p[3] * m01;
+      c[3] = -p[0] * m12 + p[1] * m02 - p[2] * m01;
+      norm2[2 * half + k] = c[0] * c[0] + c[1] * c[1] + c[2] * c[2] + c[3] * c[3];
     }
   }
-  if (!(best > 0.0)) v[0] = v[1] = v[2] = v[3] = 0.0;
+  const int first = norm2[1] > norm2[0] ? 1 : 0;
+  const int second = norm2[3] > norm2[2] ? 3 : 2;
+  const int best = norm2[second] > norm2[first] ? second : first;
+  const bool exists = norm2[best] > 0.0;
+  for (int k = 0; k < 4; ++k) v[k] = exists ? cofactors[best][k] : 0.0;
 }
 
 }  // namespace rigel

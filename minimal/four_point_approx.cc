@@ -33,7 +33,7 @@ int Solve4ptApproxPolished(const PreparedMatches& matches, const int* sample,
   double start_c[4] = {c[0], c[1], c[2], c[3]};
   if (degree == 5) DirectDeterminantIntra(matches, sample, start_c);
   double starts[3];
-  const int num_starts = RealRoots<3>(start_c, starts);
+  const int num_starts = CubicStarts(start_c, starts);
   double roots[3];
   const int num_roots = degree == 6 ? PolishRoots<6>(c, starts, num_starts, roots)
                                     : PolishRoots<5>(c, starts, num_starts, roots);

@@ -63,8 +63,12 @@ int Solve4ptLee(const PreparedMatches& matches, const int* sample, Solutions* so
   add(1, 3, 0, 2, -1.0);
   add(2, 3, 0, 1, 1.0);
 
-  double roots[8];
-  const int num_roots = RealRoots<8>(c, roots);
+  // The determinant of degree 8 is 1 + z^2 times one of degree 6, as (x, z) turn by a rotation: the
+  // quotient has the same real roots. That of a deflated sample is a quintic.
+  double sextic[7];
+  for (int n = 0; n < 7; ++n) sextic[n] = c[n] - (n >= 2 ? sextic[n - 2] : 0.0);
+  double roots[6];
+  const int num_roots = rows.deflated() ? RealRoots<5>(sextic, roots) : RealRoots<6>(sextic, roots);
   for (int n = 0; n < num_roots; ++n) rows.AddSolution(roots[n], solutions);
   return solutions->size();
 }

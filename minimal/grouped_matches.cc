@@ -35,14 +35,6 @@ std::vector<int> GroupedOrder(int num_cameras, const std::vector<Match>& matches
 
 }  // namespace
 
-std::vector<Match> EvenSubset(const std::vector<Match>& matches, size_t count) {
-  count = std::min(count, matches.size());
-  std::vector<Match> subset;
-  subset.reserve(count);
-  for (size_t k = 0; k < count; ++k) subset.push_back(matches[k * matches.size() / count]);
-  return subset;
-}
-
 GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches)
     : rig_(rig), original_(GroupedOrder(rig.size(), matches)) {
   for (const RigCamera& camera : rig.cameras) {
@@ -73,6 +65,34 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
       directions_[(3 + i) * n + k] = rays.ray2.x[i];
     }
   }
+}
+
+GroupedMatches GroupedMatches::EvenSubset(size_t count) const {
+  const size_t n = matches_.size();
+  count = std::min(count, n);
+  GroupedMatches subset;
+  subset.rig_ = rig_;
+  subset.unproject_ = unproject_;
+  subset.matches_.reserve(count);
+  subset.original_.resize(count);
+  std::iota(subset.original_.begin(), subset.original_.end(), 0);
+  subset.pixels_.resize(4 * count + kKernelPadding);
+  subset.directions_.resize(6 * count + kKernelPadding);
+  size_t next = 0;
+  for (const MatchGroup& group : groups_) {
+    const size_t end = group.begin + group.size;
+    const size_t begin = next;
+    for (; next < count && next * n / count < end; ++next) {
+      const size_t k = next * n / count;
+      subset.matches_.push_back(matches_[k]);
+      for (int i = 0; i < 4; ++i) subset.pixels_[i * count + next] = pixels_[i * n + k];
+      for (int i = 0; i < 6; ++i) subset.directions_[i * count + next] = directions_[i * n + k];
+    }
+    if (next == begin) continue;
+    subset.groups_.push_back({group.camera1, group.camera2, static_cast<int>(begin),
+                              static_cast<int>(next - begin)});
+  }
+  return subset;
 }
 
 RayPair GroupedMatches::rays(int k) const {

@@ -23,10 +23,6 @@ struct MatchGroup {
   int size = 0;
 };
 
-// At most `count` of the matches, evenly over their order: enough to tell a good motion from a bad
-// one.
-std::vector<Match> EvenSubset(const std::vector<Match>& matches, size_t count);
-
 class GroupedMatches {
  public:
   GroupedMatches() = default;
@@ -39,6 +35,13 @@ class GroupedMatches {
 
   // In grouped order; within a group in the order of the input.
   const std::vector<Match>& matches() const { return matches_; }
+
+  // At most `count` of the matches, evenly over their order: enough to tell a good motion from a
+  // bad one. original() is then the position in the subset.
+  GroupedMatches EvenSubset(size_t count) const;
+
+  // Q diag(1 / fx, 1 / fy, 1): centred pixels, with 1 as third coordinate, to directions.
+  const Eigen::Matrix3d& Unprojection(int camera) const { return unproject_[camera]; }
 
   // Position in the input of the match at grouped position k.
   int original(int k) const { return original_[k]; }
@@ -87,7 +90,7 @@ class GroupedMatches {
   std::vector<MatchGroup> groups_;
   std::vector<Match> matches_;
   std::vector<int> original_;
-  std::vector<Eigen::Matrix3d> unproject_;  // of each camera: Q diag(1 / fx, 1 / fy, 1)
+  std::vector<Eigen::Matrix3d> unproject_;  // of each camera
   // x1 of all, then y1, x2, y2; the six coordinates of the directions likewise.
   std::vector<double> pixels_, directions_;
 };

@@ -13,24 +13,42 @@ namespace rigel {
 // Returns the number of roots.
 template <int N>
 int PolishRoots(const double* c, const double* starts, int num_starts, double* roots) {
+  constexpr int kMaxSteps = 6;
+  // Quadratic convergence: the error left is of the order of the step squared.
+  constexpr double kConverged = 1e-7;
+  constexpr int kLanes = (N + 1) / 2 * 2;
+  if (num_starts == 0) return 0;
+  double z[kLanes], step[kLanes];
+  for (int l = 0; l < kLanes; ++l) z[l] = starts[l < num_starts ? l : 0];
+  // All at once: a step of one depends on its last one, and the others fill the time.
+  for (int n = 0; n < kMaxSteps; ++n) {
+    double value[kLanes], slope[kLanes];
+    for (int l = 0; l < kLanes; ++l) {
+      value[l] = c[N] * z[l] + c[N - 1];
+      slope[l] = c[N];
+    }
+    for (int k = N - 2; k >= 0; --k) {
+      for (int l = 0; l < kLanes; ++l) {
+        slope[l] = slope[l] * z[l] + value[l];
+        value[l] = value[l] * z[l] + c[k];
+      }
+    }
+    bool all = true;
+    for (int l = 0; l < kLanes; ++l) {
+      step[l] = value[l] / slope[l];
+      z[l] -= step[l];
+    }
+    for (int l = 0; l < kLanes; ++l) all &= !(std::abs(step[l]) > kConverged * std::abs(z[l]));
+    if (all) break;
+  }
   int count = 0;
   for (int k = 0; k < num_starts; ++k) {
-    double z = starts[k];
-    double step = 0.0;
-    for (int n = 0; n < 6; ++n) {
-      double slope = 0.0;
-      const double value = EvaluatePolynomial<N>(c, z, &slope);
-      step = value / slope;
-      z -= step;
-      // Quadratic convergence: the error left is of the order of the step squared.
-      if (!(std::abs(step) > 1e-7 * std::abs(z))) break;
-    }
-    if (!std::isfinite(z) || !(std::abs(step) <= 1e-5 * (1e-6 + std::abs(z)))) continue;
+    if (!std::isfinite(z[k]) || !(std::abs(step[k]) <= 1e-5 * (1e-6 + std::abs(z[k])))) continue;
     bool duplicate = false;
     for (int n = 0; n < count; ++n) {
-      duplicate = duplicate || std::abs(roots[n] - z) <= 1e-9 * std::abs(z);
+      duplicate = duplicate || std::abs(roots[n] - z[k]) <= 1e-9 * std::abs(z[k]);
     }
-    if (!duplicate) roots[count++] = z;
+    if (!duplicate) roots[count++] = z[k];
   }
   return count;
 }

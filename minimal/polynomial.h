@@ -1,5 +1,5 @@
-// Real roots of polynomials: closed forms to degree 3, above that isolation by Descartes' rule and
-// safeguarded Newton steps.
+// Real roots of polynomials: closed forms to degree 3 and, where they are certain, to degree 5; else
+// isolation by Descartes' rule and safeguarded Newton steps.
 //
 // Coefficients ascend: p(x) = c[0] + c[1] x + ... + c[N] x^N. Every function returns the number
 // of roots that it wrote to `roots` (at most the degree), in no particular order. A leading
@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+
+#include "rigel/minimal/closed_form_roots.h"
 
 namespace rigel {
 
@@ -65,48 +67,113 @@ inline bool LeadingIsZero(const double* c) {
   return !(std::abs(c[N]) > kTinyLeading * largest);
 }
 
-// `steps` Newton steps; steps that do not reduce |p| are not taken.
+// Two Newton steps on each of `count` <= N roots, all at once; steps that do not reduce |p| are not
+// taken.
 template <int N>
-inline double Polish(const double* c, double x, int steps) {
-  double slope = 0.0;
-  double value = EvaluatePolynomial<N>(c, x, &slope);
-  for (int k = 0; k < steps && slope != 0.0; ++k) {
-    const double next = x - value / slope;
-    double next_slope = 0.0;
-    const double next_value = EvaluatePolynomial<N>(c, next, &next_slope);
-    if (!(std::abs(next_value) < std::abs(value))) break;
-    x = next;
-    value = next_value;
-    slope = next_slope;
+inline void Polish(const double* c, int count, double* roots) {
+  constexpr int kLanes = (N + 1) / 2 * 2;
+  double x[kLanes], value[kLanes], slope[kLanes];
+  for (int l = 0; l < kLanes; ++l) x[l] = roots[l < count ? l : 0];
+  const auto evaluate = [&](const double* at, double* p, double* d) {
+    for (int l = 0; l < kLanes; ++l) {
+      p[l] = c[N] * at[l] + c[N - 1];
+      d[l] = c[N];
+    }
+    for (int k = N - 2; k >= 0; --k) {
+      for (int l = 0; l < kLanes; ++l) {
+        d[l] = d[l] * at[l] + p[l];
+        p[l] = p[l] * at[l] + c[k];
+      }
+    }
+  };
+  evaluate(x, value, slope);
+  for (int n = 0; n < 2; ++n) {
+    double next[kLanes], next_value[kLanes], next_slope[kLanes];
+    for (int l = 0; l < kLanes; ++l) next[l] = x[l] - value[l] / slope[l];
+    evaluate(next, next_value, next_slope);
+    for (int l = 0; l < kLanes; ++l) {
+      // Also false for a slope of zero.
+      const bool better = std::abs(next_value[l]) < std::abs(value[l]);
+      x[l] = better ? next[l] : x[l];
+      value[l] = better ? next_value[l] : value[l];
+      slope[l] = better ? next_slope[l] : slope[l];
+    }
   }
-  return x;
+  for (int l = 0; l < count; ++l) roots[l] = x[l];
 }
 
-// The only root of p in (low, high), between which p changes sign; `low_negative` is the sign just
-// above `low`, `x` a first guess.
+// An interval with one root of p, and a first guess. Of `c` the root is x, of p it is 1 / x if
+// `reversed`, and -x or -1 / x if `mirrored`.
+struct Bracket {
+  double low, high, guess;
+  bool low_negative;  // the sign of p just above `low`
+  bool reversed, mirrored;
+};
+
+// The polynomial of a piece of the real line: c, or what c is for 1 / x, -x or -1 / x.
 template <int N>
-inline double BracketedNewton(const double* c, double low, double high, bool low_negative,
-                              double x) {
-  for (int k = 0; k < 100; ++k) {
-    double slope = 0.0;
-    const double value = EvaluatePolynomial<N>(c, x, &slope);
-    if (value == 0.0) return x;
-    if ((value < 0) == low_negative) {
-      low = x;
-    } else {
-      high = x;
-    }
-    double next = x - value / slope;
-    if (!(next > low && next < high)) {
-      next = 0.5 * (low + high);
-      if (next == low || next == high) return next;
-    } else if (std::abs(next - x) <= 1e-9 * std::abs(next)) {
-      // Quadratic convergence: what is left is of the order of the step squared.
-      return next;
-    }
-    x = next;
+inline void PieceOf(const double* c, bool reversed, bool mirrored, double* piece) {
+  for (int k = 0; k <= N; ++k) {
+    const int from = reversed ? N - k : k;
+    piece[k] = mirrored && from % 2 == 1 ? -c[from] : c[from];
   }
-  return x;
+}
+
+// The roots in `count` <= N brackets by Newton's method, safeguarded by halving. All at once: a
+// step of one depends on its last one, and the steps of the others fill the time.
+template <int N>
+inline void BracketedNewton(const double* c, const Bracket* brackets, int count, double* roots) {
+  constexpr int kLanes = (N + 1) / 2 * 2;
+  double p[N + 1][kLanes], x[kLanes], low[kLanes], high[kLanes];
+  bool low_negative[kLanes], done[kLanes];
+  for (int l = 0; l < kLanes; ++l) {
+    const Bracket& bracket = brackets[l < count ? l : 0];
+    double piece[N + 1];
+    PieceOf<N>(c, bracket.reversed, bracket.mirrored, piece);
+    for (int k = 0; k <= N; ++k) p[k][l] = piece[k];
+    x[l] = bracket.guess;
+    low[l] = bracket.low;
+    high[l] = bracket.high;
+    low_negative[l] = bracket.low_negative;
+    done[l] = l >= count;
+  }
+  int left = count;
+  for (int n = 0; n < 100 && left > 0; ++n) {
+    double value[kLanes], slope[kLanes], next[kLanes];
+    for (int l = 0; l < kLanes; ++l) {
+      value[l] = p[N][l];
+      slope[l] = 0.0;
+    }
+    for (int k = N - 1; k >= 0; --k) {
+      for (int l = 0; l < kLanes; ++l) {
+        slope[l] = slope[l] * x[l] + value[l];
+        value[l] = value[l] * x[l] + p[k][l];
+      }
+    }
+    for (int l = 0; l < kLanes; ++l) next[l] = x[l] - value[l] / slope[l];
+    for (int l = 0; l < count; ++l) {
+      if (done[l]) continue;
+      const bool below = (value[l] < 0) == low_negative[l];
+      low[l] = below ? x[l] : low[l];
+      high[l] = below ? high[l] : x[l];
+      if (value[l] == 0.0) {
+        next[l] = x[l];
+        done[l] = true;
+      } else if (!(next[l] > low[l] && next[l] < high[l])) {
+        next[l] = 0.5 * (low[l] + high[l]);
+        done[l] = next[l] == low[l] || next[l] == high[l];
+      } else {
+        // Quadratic convergence: what is left is of the order of the step squared.
+        done[l] = std::abs(next[l] - x[l]) <= 1e-9 * std::abs(next[l]);
+      }
+      x[l] = next[l];
+      left -= done[l] ? 1 : 0;
+    }
+  }
+  for (int l = 0; l < count; ++l) {
+    const double root = brackets[l].reversed ? 1.0 / x[l] : x[l];
+    roots[l] = brackets[l].mirrored ? -root : root;
+  }
 }
 
 // The power of two next to |a / b|^(1/n), within 2^-60 and 2^60; 1 if either is zero.
@@ -149,13 +216,36 @@ inline void BernsteinOnUnitInterval(const double* c, double at_one, double* b) {
 template <int N>
 inline int SignVariations(const double* b) {
   int variations = 0;
-  double last = b[0];
+  bool has_zero = b[0] == 0.0;
   for (int k = 1; k <= N; ++k) {
+    variations += (b[k] < 0) != (b[k - 1] < 0) ? 1 : 0;
+    has_zero |= b[k] == 0.0;
+  }
+  if (!has_zero) return variations;
+  variations = 0;
+  double last = 0.0;
+  for (int k = 0; k <= N; ++k) {
     if (b[k] == 0.0) continue;
     variations += last != 0.0 && (b[k] < 0) != (last < 0) ? 1 : 0;
     last = b[k];
   }
   return variations;
+}
+
+// Where in (0, 1) to look first for a root, `x` being where some approximation of p has it: away
+// from the ends, where another root may catch the iteration.
+inline double AwayFromEnds(double x) {
+  constexpr double kNear = 0.0625;
+  constexpr double kTooNear = 1e-7;
+  if (!(x > kTooNear)) return kNear;
+  return x < 1.0 - kTooNear ? x : 1.0 - kNear;
+}
+
+// The same from the values p0 and p1 at the ends and the slope d0 at 0: where the chord is zero,
+// or, near 0, the tangent, since roots differ by orders of magnitude.
+inline double FirstGuess(double p0, double d0, double p1) {
+  const double chord = p0 / (p0 - p1);
+  return AwayFromEnds(chord < 0.0625 ? std::min(-p0 / d0, 0.0625) : chord);
 }
 
 // True if p(x) is zero but for rounding: between two roots that rounding may have made complex.
@@ -164,9 +254,18 @@ inline bool IsRounding(const double* c, double x) {
   return std::abs(EvaluatePolynomial<N>(c, x)) <= 4e-15 * PolynomialMagnitude<N>(c, x);
 }
 
-// Roots in (0, 1) of p, p(0) != 0, and 1 if `with_one` and p(1) is zero exactly.
+// Brackets of the roots in (0, 1) of p, p(0) != 0, and 1 if `with_one` and p(1) is zero exactly.
+// `bracket` has the piece's kind; at most `capacity` are written. Returns their number. `exact`
+// becomes false if some of them may stand for more than one root, or for none.
 template <int N>
-int RootsInUnitInterval(const double* c, double at_one, bool with_one, double* roots) {
+int BracketsInUnitInterval(const double* c, double at_one, bool with_one, Bracket bracket,
+                           int capacity, Bracket* brackets, bool* exact) {
+  const auto known = [&](double root) {
+    *exact = false;
+    bracket.low = bracket.high = bracket.guess = root;
+    bracket.low_negative = false;
+    return bracket;
+  };
   struct Piece {
     double low, width;
     double b[N + 1];
@@ -179,8 +278,8 @@ int RootsInUnitInterval(const double* c, double at_one, bool with_one, double* r
   stack[0].low = 0.0;
   stack[0].width = 1.0;
   BernsteinOnUnitInterval<N>(c, at_one, stack[0].b);
-  if (at_one == 0.0 && with_one) roots[count++] = 1.0;
-  while (top >= 0 && count < N) {
+  if (at_one == 0.0 && with_one && capacity > 0) brackets[count++] = known(1.0);
+  while (top >= 0 && count < capacity) {
     Piece& piece = stack[top];
     double* b = piece.b;
     const int variations = SignVariations<N>(b);
@@ -190,18 +289,20 @@ int RootsInUnitInterval(const double* c, double at_one, bool with_one, double* r
       // The sign just inside the lower end: a zero at the end itself is a root already counted.
       int first = 0;
       while (b[first] == 0.0) ++first;
-      // Start at the zero of the chord, but not at an end: another root there would catch it.
-      const double chord = b[0] / (b[0] - b[N]);
-      const double fraction = chord > 0.0625 && chord < 0.9375 ? chord
-                              : chord <= 0.0625                ? 0.0625
-                                                               : 0.9375;
-      const double guess = piece.low + piece.width * fraction;
-      roots[count++] =
-          BracketedNewton<N>(c, piece.low, piece.low + piece.width, b[first] < 0, guess);
+      // Where the polygon of the coefficients crosses zero.
+      int change = first + 1;
+      while ((b[change] < 0) == (b[first] < 0)) ++change;
+      const double share = b[change - 1] / (b[change - 1] - b[change]);
+      const double fraction = AwayFromEnds((change - 1 + share) / N);
+      bracket.low = piece.low;
+      bracket.high = piece.low + piece.width;
+      bracket.guess = piece.low + piece.width * fraction;
+      bracket.low_negative = b[first] < 0;
+      brackets[count++] = bracket;
       --top;
     } else if (piece.width < 1e-9 || top > kMaxLevel ||
                (piece.width < 1e-7 && IsRounding<N>(c, piece.low + 0.5 * piece.width))) {
-      roots[count++] = piece.low + 0.5 * piece.width;
+      brackets[count++] = known(piece.low + 0.5 * piece.width);
       --top;
     } else {
       // De Casteljau at the middle: the left half replaces the piece, the right half is pushed.
@@ -215,11 +316,21 @@ int RootsInUnitInterval(const double* c, double at_one, bool with_one, double* r
       piece.width *= 0.5;
       right.low = piece.low + piece.width;
       right.width = piece.width;
-      if (right.b[0] == 0.0) roots[count++] = right.low;
+      if (right.b[0] == 0.0) brackets[count++] = known(right.low);
       ++top;
     }
   }
   return count;
+}
+
+// The bracket (0, 1) of the only root there, of p with p(1) = `at_one`.
+template <int N>
+inline Bracket WholePiece(const double* c, double at_one, Bracket bracket) {
+  bracket.low = 0.0;
+  bracket.high = 1.0;
+  bracket.low_negative = c[0] < 0;
+  bracket.guess = FirstGuess(c[0], c[1], at_one);
+  return bracket;
 }
 
 }  // namespace polynomial_internal
@@ -247,11 +358,11 @@ inline int RealRoots<2>(const double* c, double* roots) {
   return 2;
 }
 
-template <>
-inline int RealRoots<3>(const double* c, double* roots) {
+// Roots of a cubic to some 1e-8 of the largest: starts of an iteration.
+inline int CubicStarts(const double* c, double* roots) {
   if (!polynomial_internal::AllFinite<3>(c)) return 0;
   if (polynomial_internal::LeadingIsZero<3>(c)) return RealRoots<2>(c, roots);
-  // Depressed form (Press et al., Numerical Recipes, section 5.6), then Newton on the original.
+  // Depressed form (Press et al., Numerical Recipes, section 5.6).
   const double inv = 1.0 / c[3];
   const double a = c[2] * inv;
   const double b = c[1] * inv;
@@ -263,13 +374,21 @@ inline int RealRoots<3>(const double* c, double* roots) {
   int count = 0;
   if (R * R < Q3) {
     const double root_Q = std::sqrt(Q);
-    const double theta = std::acos(std::clamp(R / (Q * root_Q), -1.0, 1.0)) / 3.0;
-    const double cos_theta = std::cos(theta);
-    const double sin_theta = std::sin(theta);
-    constexpr double kHalfSqrt3 = 0.86602540378443864676;
-    roots[0] = -2.0 * root_Q * cos_theta - third_a;
-    roots[1] = root_Q * (cos_theta + 2.0 * kHalfSqrt3 * sin_theta) - third_a;
-    roots[2] = root_Q * (cos_theta - 2.0 * kHalfSqrt3 * sin_theta) - third_a;
+    const double cosine = R / (Q * root_Q);
+    double cos_third, sin_third;
+    // Where two roots are close the approximation would shift them by too much.
+    constexpr double kApart = 1e-4;
+    if (std::abs(cosine) < 1.0 - kApart) {
+      cos_third = polynomial_internal::CosOfThird(cosine);
+      sin_third = std::sqrt((1.0 - cos_third) * (1.0 + cos_third));
+    } else {
+      const double third = std::acos(std::clamp(cosine, -1.0, 1.0)) / 3.0;
+      cos_third = std::cos(third);
+      sin_third = std::sin(third);
+    }
+    roots[0] = -2.0 * root_Q * cos_third - third_a;
+    roots[1] = root_Q * (cos_third + polynomial_internal::kSqrt3 * sin_third) - third_a;
+    roots[2] = root_Q * (cos_third - polynomial_internal::kSqrt3 * sin_third) - third_a;
     count = 3;
   } else {
     const double magnitude = std::cbrt(std::abs(R) + std::sqrt(R * R - Q3));
@@ -285,18 +404,77 @@ inline int RealRoots<3>(const double* c, double* roots) {
       }
     }
   }
-  for (int k = 0; k < count; ++k) roots[k] = polynomial_internal::Polish<3>(c, roots[k], 2);
   return count;
 }
 
-// Degree 4 and above. The real line is cut into (0, 1), (-1, 0) and, through the reversed
-// polynomial, what lies beyond 1 and -1. On each piece the sign variations of the Bernstein
-// coefficients bound the number of roots (Descartes): 0 variations, no root; 1, exactly one; more,
-// the piece is halved (Collins and Akritas 1976; Lane and Riesenfeld 1981). So no real root is
-// lost but for two that are closer than 1e-9 of their piece, which are returned once.
-//
-// Ferrari's closed form for degree 4 loses one small root in ten beside large ones (measured on
-// the planar solver at 1 degree) and is not faster.
+template <>
+inline int RealRoots<3>(const double* c, double* roots) {
+  const int count = CubicStarts(c, roots);
+  if (count > 0) polynomial_internal::Polish<3>(c, count, roots);
+  return count;
+}
+
+namespace polynomial_internal {
+
+// Isolation, and Newton on all roots at once. The real line is cut into (0, 1), (-1, 0) and,
+// through the reversed polynomial, what lies beyond 1 and -1. On each piece the sign variations of
+// the Bernstein coefficients bound the number of roots (Descartes): 0 variations, no root; 1,
+// exactly one; more, the piece is halved (Collins and Akritas 1976; Lane and Riesenfeld 1981). So no
+// real root is lost but for two that are closer than 1e-9 of their piece, which are returned once.
+// c[0] and c[N] must not be zero. Writes at most `capacity` roots; returns their number.
+template <int N>
+int IsolatedRoots(const double* c, int capacity, double* roots) {
+  // Both pieces that meet at 1 (or -1) must see the same sign there.
+  double at_one = 0.0;
+  double at_minus_one = 0.0;
+  for (int k = 0; k <= N; ++k) {
+    at_one += c[k];
+    at_minus_one += k % 2 == 0 ? c[k] : -c[k];
+  }
+  Bracket brackets[N];
+  int num_brackets = 0;
+  for (const bool mirrored : {false, true}) {
+    double near[N + 1], far[N + 1];
+    PieceOf<N>(c, false, mirrored, near);
+    // Descartes on the whole half line: at most so many roots, and an even number less.
+    const int variations = SignVariations<N>(near);
+    if (variations == 0) continue;
+    const double end = mirrored ? at_minus_one : at_one;
+    Bracket bracket;
+    bracket.mirrored = mirrored;
+    bracket.reversed = false;
+    int found = 0;
+    bool exact = end != 0.0 && c[N] != 0.0;
+    const bool only_near = variations == 1 && exact && (end < 0) != (near[0] < 0);
+    if (only_near && num_brackets < capacity) {
+      brackets[num_brackets++] = WholePiece<N>(near, end, bracket);
+      continue;
+    }
+    if (variations > 1 || !exact) {
+      found = BracketsInUnitInterval<N>(
+          near, end, true, bracket, capacity - num_brackets, brackets + num_brackets, &exact);
+      num_brackets += found;
+    }
+    if (exact && found == variations) continue;
+    bracket.reversed = true;
+    PieceOf<N>(c, true, mirrored, far);
+    if (exact && found + 1 == variations) {
+      if (num_brackets < capacity) {
+        brackets[num_brackets++] = WholePiece<N>(far, end, bracket);
+      }
+      continue;
+    }
+    num_brackets += BracketsInUnitInterval<N>(
+        far, end, false, bracket, capacity - num_brackets, brackets + num_brackets, &exact);
+  }
+  BracketedNewton<N>(c, brackets, num_brackets, roots);
+  return num_brackets;
+}
+
+}  // namespace polynomial_internal
+
+// Degree 4 and above: degrees 4 and 5 in closed form where that is certain of the number of roots,
+// else by isolation.
 template <int N>
 int RealRoots(const double* c, double* roots) {
   static_assert(N >= 4);
@@ -336,34 +514,17 @@ int RealRoots(const double* c, double* roots) {
   }
   c = scaled;
 
-  // Both pieces that meet at 1 (or -1) must see the same sign there.
-  double at_one = 0.0;
-  double at_minus_one = 0.0;
-  for (int k = 0; k <= N; ++k) {
-    at_one += c[k];
-    at_minus_one += k % 2 == 0 ? c[k] : -c[k];
-  }
-  double piece[N + 1];
-  for (int side = 0; side < 4; ++side) {
-    const bool reversed = side % 2 == 1;
-    const bool mirrored = side >= 2;
-    for (int k = 0; k <= N; ++k) {
-      const double value = reversed ? c[N - k] : c[k];
-      piece[k] = mirrored && (reversed ? N - k : k) % 2 == 1 ? -value : value;
-    }
-    // Descartes on the whole half line: no sign variation, no root on either piece.
-    if (!reversed && polynomial_internal::SignVariations<N>(piece) == 0) {
-      ++side;
-      continue;
-    }
-    const double end = mirrored ? at_minus_one : at_one;
-    double found[N + 1];
-    const int num_found = polynomial_internal::RootsInUnitInterval<N>(piece, end, !reversed, found);
-    for (int k = 0; k < num_found && count < N; ++k) {
-      const double x = mirrored ? -found[k] : found[k];
-      roots[count++] = scale * (reversed ? 1.0 / x : x);
+  if constexpr (N <= 5) {
+    const int found = count > 0 ? polynomial_internal::kUndecided
+                                : polynomial_internal::RootsInClosedForm<N>(c, roots);
+    if (found != polynomial_internal::kUndecided) {
+      for (int k = 0; k < found; ++k) roots[k] *= scale;
+      return found;
     }
   }
+
+  const int found = polynomial_internal::IsolatedRoots<N>(c, N - count, roots + count);
+  for (int k = 0; k < found; ++k) roots[count++] *= scale;
   return count;
 }
 

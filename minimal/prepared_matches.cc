@@ -39,6 +39,16 @@ PreparedMatches::PreparedMatches(const Rig& rig, const std::vector<Match>& match
   Set(rig, matches, alignment);
 }
 
+PreparedMatches::PreparedMatches(const GroupedMatches& matches, const Alignment& alignment)
+    : alignment_(alignment) {
+  matches_.reserve(matches.size());
+  rays_.reserve(matches.size());
+  for (int k = 0; k < matches.size(); ++k) {
+    rays_.push_back(matches.rays(k));
+    matches_.push_back(Prepare(rays_.back(), alignment, matches.matches()[k]));
+  }
+}
+
 void PreparedMatches::Set(const Rig& rig, const std::vector<Match>& matches,
                           const Alignment& alignment) {
   alignment_ = alignment;

@@ -18,6 +18,7 @@
 #include "rigel/core/rays.h"
 #include "rigel/core/rig.h"
 #include "rigel/minimal/alignment.h"
+#include "rigel/minimal/grouped_matches.h"
 
 namespace rigel {
 
@@ -39,6 +40,9 @@ class PreparedMatches {
  public:
   PreparedMatches() = default;
   PreparedMatches(const Rig& rig, const std::vector<Match>& matches, const Alignment& alignment);
+
+  // In grouped order.
+  PreparedMatches(const GroupedMatches& matches, const Alignment& alignment);
 
   // Keeps the memory of the last frame pair.
   void Set(const Rig& rig, const std::vector<Match>& matches, const Alignment& alignment);

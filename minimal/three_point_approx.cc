@@ -27,7 +27,7 @@ int Solve3ptApproxPolished(const PreparedMatches& matches, const int* sample,
   if (system.Determinant(c) == 0) return 0;
   // The cubic Taylor polynomial of det F; for intra-camera samples that is det F itself.
   double starts[3];
-  const int num_starts = RealRoots<3>(c, starts);
+  const int num_starts = CubicStarts(c, starts);
   double roots[3];
   const int num_roots = PolishRoots<4>(c, starts, num_starts, roots);
   for (int k = 0; k < num_roots; ++k) system.AddSolution(matches, roots[k], solutions);

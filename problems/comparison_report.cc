@@ -1,11 +1,10 @@
 // Tables, JSON and CSV of rigel_compare.
-#include <algorithm>
-
 #include <nlohmann/json.hpp>
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/csv.h"
 #include "rigel/problems/report.h"
+#include "rigel/problems/sequence_tables.h"
 #include "rigel/problems/summary_json.h"
 #include "rigel/problems/table.h"
 
@@ -57,7 +56,7 @@ Json PairJson(const ComparisonReport& report, size_t k) {
   return object;
 }
 
-std::string SequenceTable(const std::vector<SolverSummary>& summaries) {
+std::string SolverTable(const std::vector<SolverSummary>& summaries) {
   // A blank before the first column of each group. The widths given keep it to 100 columns with the
   // longest solver name.
   Table table(1);
@@ -103,29 +102,17 @@ std::string SequenceTable(const std::vector<SolverSummary>& summaries) {
 }  // namespace
 
 std::string ComparisonTable(const std::vector<SolverSummary>& summaries) {
-  // In the order of first appearance: "all" comes first.
-  std::vector<std::string> sequences;
+  // Of "all", which is there of each solver; sequences have tables of their own.
+  std::vector<SolverSummary> all;
   for (const SolverSummary& s : summaries) {
-    if (std::find(sequences.begin(), sequences.end(), s.sequence) == sequences.end()) {
-      sequences.push_back(s.sequence);
-    }
+    if (s.sequence == "all") all.push_back(s);
   }
-  std::string text;
-  for (const std::string& sequence : sequences) {
-    std::vector<SolverSummary> group;
-    for (const SolverSummary& s : summaries) {
-      if (s.sequence == sequence) group.push_back(s);
-    }
-    if (!text.empty()) text += "\n";
-    const int n = group.front().pairs;
-    if (sequence == "all") {
-      text += n == 1 ? "one pair\n" : "all pairs, " + std::to_string(n) + " of them; medians\n";
-    } else {
-      text += "sequence " + Shortened(sequence, 60) + ", " + std::to_string(n) +
-              (n == 1 ? " pair\n" : " pairs; medians\n");
-    }
-    text += SequenceTable(group);
-  }
+  if (all.empty()) return SequenceTables(summaries);
+  const int n = all.front().pairs;
+  std::string text =
+      n == 1 ? "one pair\n" : "all pairs, " + std::to_string(n) + " of them; medians\n";
+  text += SolverTable(all);
+  if (summaries.size() > all.size()) text += "\n" + SequenceTables(summaries);
   return text;
 }
 

@@ -166,7 +166,9 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
       if (c == '\n') text += "    ";
     }
   }
-  return text + (pairs.empty() ? "]\n}\n" : "\n  ]\n}\n");
+  text += pairs.empty() ? "]" : "\n  ]";
+  if (report.trajectories) text += ",\n  \"trajectories\": " + TrajectoriesJson(report);
+  return text + "\n}\n";
 }
 
 std::string EstimateCsv(const EstimateReport& report, bool times) {

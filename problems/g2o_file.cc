@@ -1,6 +1,5 @@
 #include "rigel/problems/g2o_file.h"
 
-#include <cmath>
 #include <limits>
 #include <locale>
 #include <optional>
@@ -19,16 +18,6 @@ std::string WhyNoEdge(const MotionEstimate& e) {
   if (!e.refine.IsSolutionUsable() || !e.refine.covariance) return "no refined motion";
   if (!e.refine.rotation_observable) return "rotation not observable";
   if (!e.refine.translation_observable) return "direction of translation not observable";
-  return "";
-}
-
-// Why `pair` does not start where `before` ended; empty if it does.
-std::string WhyNotNext(const FramePair& before, const FramePair& pair) {
-  if (pair.sequence != before.sequence) return "another sequence";
-  if (before.time2 && pair.time1 && std::abs(*pair.time1 - *before.time2) > kSameTimeSeconds) {
-    return "starts at " + CsvNumber(*pair.time1) + " s, the pair before ends at " +
-           CsvNumber(*before.time2) + " s";
-  }
   return "";
 }
 
@@ -70,10 +59,7 @@ std::string FormatG2o(const std::vector<FramePair>& pairs,
   };
   for (size_t k = 0; k < pairs.size(); ++k) {
     if (open) {
-      std::string why = WhyNotNext(pairs[k - 1], pairs[k]);
-      if (!positions.empty() && positions[k] != positions[k - 1] + 1) {
-        why = "a pair is missing before it";
-      }
+      const std::string why = WhyNotNext(pairs, positions, k);
       if (!why.empty()) {
         note(pairs[k].name + ": " + why + ": the trajectory ended before it, at vertex " +
              std::to_string(num_vertices - 1));

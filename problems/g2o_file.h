@@ -13,14 +13,11 @@
 #include <vector>
 
 #include "rigel/core/frame_pair.h"
+#include "rigel/problems/trajectory.h"
 #include "rigel/refine/estimate_motion.h"
 
 namespace rigel {
 
-// Time stamps of one frame in two files differ by no more than this, seconds.
-inline constexpr double kSameTimeSeconds = 1e-6;
-
-inline constexpr double kRoughScaleRatio = 0.5;
 inline constexpr double kLengthWithoutScale = 1.0;  // metres
 
 // Chains the motions: pair k leads from one pose to the next, where pair k + 1 starts. `pairs` and

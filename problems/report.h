@@ -11,6 +11,7 @@
 #include "rigel/core/frame_pair.h"
 #include "rigel/problems/comparison.h"
 #include "rigel/problems/shard.h"
+#include "rigel/problems/trajectory.h"
 #include "rigel/refine/estimate_motion.h"
 
 namespace rigel {
@@ -26,8 +27,9 @@ struct ComparisonReport {
   int num_files = 0;                   // ... which are so many in all
 };
 
-// Medians over the pairs, one row an entry; 100 columns at most. Where every pair has a bound, a
-// second table gives the efficiency, RMS error over RMS bound.
+// Medians over all pairs, one row a solver; 100 columns at most. Where every pair has a bound, a
+// second table gives the efficiency, RMS error over RMS bound. Where there are summaries of
+// sequences, SequenceTables() follows.
 std::string ComparisonTable(const std::vector<SolverSummary>& summaries);
 
 // With the results of each pair, one line a pair, if `per_pair` is true.
@@ -48,12 +50,22 @@ struct EstimateReport {
   std::vector<FramePair> pairs;  // their rigs and matches are not looked at
   std::vector<MatchCount> matches;
   std::vector<MotionEstimate> estimates;
+  // The motions chained, where that was asked for; `refined` tells what their
+  // `estimate` is.
+  std::optional<std::vector<Trajectory>> trajectories;
+  bool refined = true;
 };
 
 // One motion a row.
 std::string EstimateTable(const EstimateReport& report);
 std::string EstimateJson(const EstimateReport& report, bool times);
 std::string EstimateCsv(const EstimateReport& report, bool times);
+
+// Drift of report.trajectories that have a truth; 100 columns at most. Empty if none has.
+std::string DriftTable(const EstimateReport& report);
+
+// The value of "trajectories" in the JSON, its lines after the first indented by two blanks.
+std::string TrajectoriesJson(const EstimateReport& report);
 
 }  // namespace rigel
 

@@ -25,13 +25,13 @@ class FramePairSolver {
                   const Alignment& alignment, const RansacOptions& options)
       : solver_(solver),
         matches_(matches),
-        subset_(matches.rig(), EvenSubset(matches.matches(), kSubset)),
-        sign_subset_(matches.rig(), EvenSubset(matches.matches(), kSignSubset)),
-        prepared_(matches.rig(), matches.matches(), alignment),
+        subset_(matches.EvenSubset(kSubset)),
+        sign_subset_(matches.EvenSubset(kSignSubset)),
+        prepared_(matches, alignment),
         sampler_(matches, solver.sampling, solver.sample_size, options.max_iterations,
                  options.prosac),
         options_(options),
-        optimized_(matches.rig(), EvenSubset(matches.matches(), kOptimized)),
+        optimized_(matches.EvenSubset(kOptimized)),
         loose_engine_(subset_),
         engine_(optimized_),
         threshold_px_(options.threshold_px) {

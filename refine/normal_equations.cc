@@ -1,23 +1,57 @@
 #include "rigel/refine/normal_equations.h"
 
-namespace rigel {
+#include <limits>
 
-void AddNormalEquations(const SampsonKernelOptions& options, const GroupLinearization& linear,
-                        const PixelArrays& pixels, const double* weights, double* cost,
-                        ParameterVector* gradient, ParameterMatrix* curvature) {
-  using RowMajor3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  const int n = static_cast<int>(gradient->size());
-  const RowMajor3d F = linear.F;
+#include <Eigen/Geometry>
+
+namespace rigel {
+namespace {
+
+using RowMajor3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+// The group's centred fundamental matrix, and its derivatives.
+RowMajor3d Differentiate(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
+                         FundamentalDerivatives* D) {
+  const RigCamera& c1 = matches.rig().cameras[group.camera1];
+  const RigCamera& c2 = matches.rig().cameras[group.camera2];
+  const Eigen::Vector3d Rs = pose.R * c1.s;
+  const Eigen::Vector3d b = Rs + pose.t - c2.s;
+  const Eigen::Matrix3d right = pose.R * matches.Unprojection(group.camera1);
+  const Eigen::Matrix3d& left = matches.Unprojection(group.camera2);
+  RowMajor3d F;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d l = left.col(i);
+    const Eigen::Vector3d lb = l.cross(b);
+    for (int j = 0; j < 3; ++j) {
+      // F_ij = l.(b x r); r turns with R, b does and moves with t.
+      const Eigen::Vector3d r = right.col(j);
+      const Eigen::Vector3d rl = r.cross(l);
+      const Eigen::Vector3d by_w = Rs.cross(rl) + r.cross(lb);
+      F(i, j) = b.dot(rl);
+      double* d = D->d[3 * i + j];
+      for (int k = 0; k < 3; ++k) {
+        d[k] = by_w[k];
+        d[3 + k] = rl[k];
+      }
+      d[6] = d[7] = 0.0;
+    }
+  }
+  return F;
+}
+
+}  // namespace
+
+void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatches& matches,
+                        const MatchGroup& group, const PixelArrays& pixels, const double* weights,
+                        const Pose& pose, MotionNormalEquations* sum) {
+  FundamentalDerivatives D;
+  const RowMajor3d F = Differentiate(matches, group, pose, &D);
+  constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
   SampsonSums sums;
-  SumSampson(options, pixels, weights, F.data(), linear.rounding2, true, &sums);
-  *cost += sums.cost;
-  Eigen::Matrix<double, 9, Eigen::Dynamic, Eigen::ColMajor, 9, 6> D(9, n);
-  for (int m = 0; m < n; ++m) Eigen::Map<RowMajor3d>(D.col(m).data()) = linear.dF[m];
-  const Eigen::Map<const Eigen::Matrix<double, 9, 9>> H(sums.H);
-  const Eigen::Map<const Eigen::Matrix<double, 9, 1>> g(sums.g);
-  const Eigen::Matrix<double, 9, Eigen::Dynamic, Eigen::ColMajor, 9, 6> HD = H.lazyProduct(D);
-  gradient->noalias() += D.transpose().lazyProduct(g);
-  curvature->noalias() += D.transpose().lazyProduct(HD);
+  SumSampson(options, pixels, weights, F.data(), kRounding * kRounding * F.squaredNorm(), true,
+             &sums);
+  sum->cost += sums.cost;
+  AddProjected(sums, D, sum->gradient.data(), sum->curvature.data());
 }
 
 }  // namespace rigel

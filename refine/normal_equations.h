@@ -1,24 +1,27 @@
-// The normal equations of one camera pair's Sampson errors by the parameters of a motion.
+// The normal equations of the Sampson errors of a frame pair by its motion.
 #ifndef RIGEL_REFINE_NORMAL_EQUATIONS_H_
 #define RIGEL_REFINE_NORMAL_EQUATIONS_H_
 
 #include <Eigen/Core>
 
-#include "rigel/refine/epipolar_residuals.h"
+#include "rigel/core/pose.h"
+#include "rigel/minimal/grouped_matches.h"
 #include "rigel/refine/sampson_kernel.h"
 
 namespace rigel {
 
-// Of at most six parameters: no heap.
-using ParameterVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
-using ParameterMatrix =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+// By the perturbation R <- Exp(w) R, t <- t + e: w (radians), then e (metres).
+struct MotionNormalEquations {
+  double cost = 0.0;
+  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
+  Eigen::Matrix<double, 6, 6> curvature = Eigen::Matrix<double, 6, 6>::Zero();
+};
 
-// Adds what SumSampson() gives for the matches, turned from the entries of F into the n parameters
-// that `linear` has the derivatives of. `gradient` has n entries, `curvature` n x n.
-void AddNormalEquations(const SampsonKernelOptions& options, const GroupLinearization& linear,
-                        const PixelArrays& pixels, const double* weights, double* cost,
-                        ParameterVector* gradient, ParameterMatrix* curvature);
+// Adds what SumSampson() gives at `pose` for `pixels` and their weights: matches of the group, or
+// some of them.
+void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatches& matches,
+                        const MatchGroup& group, const PixelArrays& pixels, const double* weights,
+                        const Pose& pose, MotionNormalEquations* sum);
 
 }  // namespace rigel
 

@@ -102,8 +102,8 @@ class PriorCost : public ceres::CostFunction {
   double unit_;  // the image noise: residuals of matches are in pixels, the prior's in sigmas
 };
 
+// Of at least one value.
 double Median(std::vector<double>* values) {
-  if (values->empty()) return -1.0;
   const auto middle = values->begin() + static_cast<long>(values->size() / 2);
   std::nth_element(values->begin(), middle, values->end());
   return *middle;
@@ -134,8 +134,7 @@ class Refiner {
       : options_(options),
         matches_(matches),
         prior_(prior),
-        residuals_(matches, options.residual),
-        sign_subset_(matches.rig(), EvenSubset(matches.matches(), kSignSubset)),
+        sign_subset_(matches.EvenSubset(kSignSubset)),
         engine_(matches) {}
 
   RefineSummary Run(Pose* pose);
@@ -150,6 +149,7 @@ class Refiner {
   bool ReferenceIsStale(const Pose& pose) const;
   Matrix6d WithPrior(Matrix6d information, const Pose& pose) const;
   Matrix6d Information(const Pose& pose) const;
+  double ScaleSigma(const Pose& pose) const;
   bool ScaleIsFree(const Pose& pose) const;
   bool SearchesScale(const Pose& pose) const;
   void ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotation,
@@ -175,7 +175,6 @@ class Refiner {
   const RefineOptions& options_;
   const GroupedMatches& matches_;
   const MotionPrior& prior_;
-  const EpipolarResiduals residuals_;
   const GroupedMatches sign_subset_;
   SmallEngine engine_;
   Alignment alignment_;
@@ -187,6 +186,13 @@ class Refiner {
   bool judges_parallax_ = false;  // inlier_selection.h; at a minimum only
   double noise_px_ = 1.0;
   bool scale_free_ = true;
+  struct ScaleQuestion {
+    Pose pose;
+    std::vector<char> mask;
+    double noise_px = -1.0;
+    double sigma = 0.0;
+  };
+  mutable ScaleQuestion last_scale_;  // see ScaleSigma()
   int reference_match_ = -1;  // of the depth forms, grouped order
   RefineSummary summary_;
 };
@@ -212,9 +218,9 @@ void Refiner::EstimateNoise() {
   std::vector<double> errors;
   errors.reserve(num_inliers_);
   for (size_t k = 0; k < mask_.size(); ++k) {
-    if (mask_[k]) errors.push_back(std::sqrt(squared_errors_[k]));
+    if (mask_[k]) errors.push_back(squared_errors_[k]);
   }
-  summary_.median_residual_px = Median(&errors);
+  summary_.median_residual_px = errors.empty() ? -1.0 : std::sqrt(Median(&errors));
   // Residuals of as many matches as parameters are zero whatever the noise is. With little
   // redundancy the threshold says more of the noise than they do: it is meant to be three sigma.
   constexpr int kParameters = 6;
@@ -246,6 +252,16 @@ Matrix6d Refiner::WithPrior(Matrix6d information, const Pose& pose) const {
   return information;
 }
 
+// Asked for the same motion and selection more than once.
+double Refiner::ScaleSigma(const Pose& pose) const {
+  ScaleQuestion& last = last_scale_;
+  if (pose.R != last.pose.R || pose.t != last.pose.t || noise_px_ != last.noise_px ||
+      mask_ != last.mask) {
+    last = {pose, mask_, noise_px_, RelativeScaleSigma(Information(pose), pose)};
+  }
+  return last.sigma;
+}
+
 bool Refiner::ScaleIsFree(const Pose& pose) const {
   switch (options_.scale) {
     case ScaleMode::kFree:
@@ -255,7 +271,7 @@ bool Refiner::ScaleIsFree(const Pose& pose) const {
     case ScaleMode::kAuto:
       break;
   }
-  return RelativeScaleSigma(Information(pose), pose) <= kScaleObservableRatio;
+  return ScaleSigma(pose) <= kScaleObservableRatio;
 }
 
 // At the false minima of intra-camera matches the scale looks well determined, so that their kind
@@ -399,7 +415,8 @@ bool Refiner::SolveCeres(const MotionParameterization& parameterization,
                          const PriorResiduals& prior, Pose* pose) {
   const int size = parameterization.size();
   std::array<double, 6> parameters = {0, 0, 0, 0, 0, 0};
-  SharedEvaluation shared(parameterization, residuals_, parameters.data());
+  const EpipolarResiduals residuals(matches_, options_.residual);
+  SharedEvaluation shared(parameterization, residuals, parameters.data());
   std::deque<MatchCost> costs;
   PriorCost prior_cost(prior, shared, noise_px_, size);
   // The algebraic residual is in metres: a scale in pixels means nothing to it.
@@ -429,7 +446,7 @@ bool Refiner::SolveCeres(const MotionParameterization& parameterization,
       problem.AddResidualBlock(&reprojections.back(), loss.get(), parameters.data(),
                                points.back().data());
     } else {
-      costs.emplace_back(residuals_, shared, k, size, weights_[k]);
+      costs.emplace_back(residuals, shared, k, size, weights_[k]);
       problem.AddResidualBlock(&costs.back(), loss.get(), parameters.data());
     }
   }
@@ -520,7 +537,7 @@ void Refiner::FillUncertainty(const Pose& pose) {
           ? WithPrior(ReliableInformation(matches_, mask_, pose, noise_px_), pose)
           : Information(pose);
   summary_.scale_free = scale_free_;
-  summary_.relative_scale_sigma = RelativeScaleSigma(Information(pose), pose);
+  summary_.relative_scale_sigma = ScaleSigma(pose);
   const auto set_covariance = [&](const MotionBasis& basis) {
     Matrix6d covariance;
     if (!CovarianceOfBasis(information, basis, &covariance)) return;

@@ -42,6 +42,15 @@ void SumSampson(const SampsonKernelOptions& options, const PixelArrays& pixels,
                 const double* weights, const double F[9], double rounding2, bool derivatives,
                 SampsonSums* sums, CpuPath path = BestCpuPath());
 
+// The derivatives of F's entries by six parameters, F row by row; the last two columns are zero.
+struct FundamentalDerivatives {
+  double d[9][8];
+};
+
+// Adds D'g and D'H D for the first six columns of D: `gradient` has 6 entries, `curvature` 36.
+void AddProjected(const SampsonSums& sums, const FundamentalDerivatives& D, double* gradient,
+                  double* curvature, CpuPath path = BestCpuPath());
+
 // g^2 / (g^2 + floor2), g the gradient of a match by its pixels: EpipoleWeights() of uncertainty.h.
 void GradientWeights(const PixelArrays& pixels, const double F[9], double floor2, double* weights,
                      CpuPath path = BestCpuPath());

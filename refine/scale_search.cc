@@ -51,21 +51,21 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
   double length = ShortestLength(matches, pose->R);
   if (!(norm > 0) || !(length > 0)) return false;
   const Eigen::Vector3d direction = pose->t / norm;
-  const GroupedMatches subset(matches.rig(), EvenSubset(matches.matches(), kSubset));
-  const GroupedMatches coarse(matches.rig(), EvenSubset(matches.matches(), kCoarseSubset));
+  const GroupedMatches subset = matches.EvenSubset(kSubset);
+  const GroupedMatches coarse = matches.EvenSubset(kCoarseSubset);
   SmallEngine engine(subset), coarse_engine(coarse);
   std::vector<double> errors;
-  std::vector<char> mask(subset.size(), 1);
-  const std::vector<char> all = mask;
+  std::vector<char> mask;
+  const std::vector<char> all(coarse.size(), 1);
 
   // Shortest first, in the end one so long that the arms do not matter.
   std::vector<double> lengths;
-  const double share = subset.size() / static_cast<double>(matches.size());
+  const double share = coarse.size() / static_cast<double>(matches.size());
   for (int k = 0; k < kMaxLengths; ++k, length *= kStep) {
     Pose at = *pose;
     at.t = length * direction;
     const Matrix6d information =
-        SampsonInformation(subset, all, at) / (share * noise_px * noise_px);
+        SampsonInformation(coarse, all, at) / (share * noise_px * noise_px);
     if (RelativeScaleSigma(information, at) > kHopeless) break;
     lengths.push_back(length);
   }

@@ -7,6 +7,8 @@ namespace rigel {
 namespace {
 
 constexpr int kMaxScaleSteps = 8;
+// So much longer than the arms that they turn no baseline by an angle that matters.
+constexpr double kFar = 1000.0;
 
 // At least this share of the matches that can tell must lie in front of their cameras.
 constexpr double kMinShareInFront = 0.6;
@@ -72,15 +74,20 @@ bool ResolveSign(const GroupedMatches& matches, double threshold_px, Pose* pose)
 
 void ResolveSignAndScale(const GroupedMatches& matches, double threshold_px, Pose* pose) {
   const Eigen::Vector3d start = pose->t;
-  const Eigen::Vector3d mean = SignedMeanBaseline(matches, threshold_px, *pose) *
-                               std::max(start.norm(), LargestArm(matches, pose->R));
+  const double norm = start.norm();
+  const double arm = LargestArm(matches, pose->R);
+  const Eigen::Vector3d mean =
+      SignedMeanBaseline(matches, threshold_px, *pose) * std::max(norm, arm);
+  constexpr double kSameDirection = 0.999;  // 2.6 deg
+  const bool mean_is_start =
+      norm >= arm && std::abs(mean.dot(start)) > kSameDirection * norm * norm;
   double best = std::numeric_limits<double>::infinity();
   Eigen::Vector3d best_t = start;
   double factor = 1.0;
+  const Eigen::Vector3d directions[] = {start, -start, mean};
   for (int k = 0; k <= kMaxScaleSteps; ++k) {
-    for (const Eigen::Vector3d& t :
-         {Eigen::Vector3d(factor * start), Eigen::Vector3d(-factor * start),
-          Eigen::Vector3d(factor * mean)}) {
+    for (int i = 0; i < (mean_is_start ? 2 : 3); ++i) {
+      const Eigen::Vector3d t = factor * directions[i];
       Pose candidate = *pose;
       candidate.t = t;
       int inliers = 0;
@@ -90,6 +97,7 @@ void ResolveSignAndScale(const GroupedMatches& matches, double threshold_px, Pos
         best_t = t;
       }
     }
+    if (factor * norm > kFar * arm) break;
     factor *= 4.0;
   }
   pose->t = best_t;

@@ -10,19 +10,24 @@
 namespace rigel {
 namespace {
 
+// Of at most six parameters: no heap.
+using ParameterVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
+using ParameterMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
 // Cost, gradient and curvature at one point, and how to get them.
-class NormalEquations {
+class ParameterEquations {
  public:
-  NormalEquations(const SmallEngineOptions& options, const GroupedMatches& matches,
+  ParameterEquations(const SmallEngineOptions& options, const GroupedMatches& matches,
                   const MotionParameterization& parameterization,
-                  const std::vector<double>& weights, const PriorResiduals& prior,
-                  double prior_unit, std::vector<GroupLinearization>* groups)
+                  const PackedMatches& packed, const PriorResiduals& prior,
+                  double prior_unit)
       : matches_(matches),
         parameterization_(parameterization),
-        weights_(weights),
+        packed_(packed),
         prior_(prior),
-        prior_unit_(prior_unit),
-        groups_(groups) {
+        prior_unit_(prior_unit) {
     kernel_.loss = options.loss;
     kernel_.loss_scale = options.loss_scale;
     kernel_.curvature = Curvature::kNewton;
@@ -33,16 +38,19 @@ class NormalEquations {
     Pose pose;
     MotionBasis basis;
     parameterization_.Evaluate(parameters.data(), &pose, &basis);
-    LinearizeGroups(matches_, ResidualKind::kSampson, pose, &basis, groups_);
-    cost = 0.0;
-    gradient.setZero(n);
-    curvature.setZero(n, n);
-    for (size_t g = 0; g < groups_->size(); ++g) {
-      const MatchGroup& group = matches_.groups()[g];
-      const GroupLinearization& linear = (*groups_)[g];
-      AddNormalEquations(kernel_, linear, matches_.Pixels(group), weights_.data() + group.begin,
-                         &cost, &gradient, &curvature);
+    MotionNormalEquations sum;
+    for (size_t g = 0; g < packed_.groups.size(); ++g) {
+      const PixelArrays& pixels = packed_.groups[g];
+      const double* weights = packed_.weights.data() + (pixels.x1 - packed_.x1.data());
+      AddNormalEquations(kernel_, matches_, matches_.groups()[g], pixels, weights, pose, &sum);
     }
+    cost = sum.cost;
+    // Filled up with zeros, so that the sizes are known to the compiler.
+    Matrix6d B = Matrix6d::Zero();
+    B.leftCols(n) = basis;
+    gradient = (B.transpose() * sum.gradient).head(n);
+    const Matrix6d by_parameters = B.transpose() * (sum.curvature * B);
+    curvature = by_parameters.topLeftCorner(n, n);
     if (prior_.size() == 0) return;
     PriorResiduals::Residuals r;
     PriorResiduals::Jacobian by_motion;
@@ -67,15 +75,14 @@ class NormalEquations {
  private:
   const GroupedMatches& matches_;
   const MotionParameterization& parameterization_;
-  const std::vector<double>& weights_;
+  const PackedMatches& packed_;
   const PriorResiduals& prior_;
   double prior_unit_;
   SampsonKernelOptions kernel_;
-  std::vector<GroupLinearization>* groups_;
 };
 
 // Damping by the diagonal of the scaled curvature; radians and metres are unlike.
-ParameterVector DampedStep(const NormalEquations& at, double mu) {
+ParameterVector DampedStep(const ParameterEquations& at, double mu) {
   constexpr double kMinDiagonal = 1e-6;
   const ParameterVector scale = (1.0 + at.curvature.diagonal().array().sqrt()).inverse();
   ParameterMatrix scaled = scale.asDiagonal() * at.curvature * scale.asDiagonal();
@@ -85,6 +92,29 @@ ParameterVector DampedStep(const NormalEquations& at, double mu) {
 }
 
 }  // namespace
+
+void PackedMatches::Set(const GroupedMatches& matches, const std::vector<double>& all_weights) {
+  for (std::vector<double>* values : {&x1, &y1, &x2, &y2, &weights}) {
+    values->resize(matches.size());
+  }
+  groups.clear();
+  int n = 0;
+  for (const MatchGroup& group : matches.groups()) {
+    const PixelArrays pixels = matches.Pixels(group);
+    const double* w = all_weights.data() + group.begin;
+    const int begin = n;
+    for (int k = 0; k < group.size; ++k) {
+      x1[n] = pixels.x1[k];
+      y1[n] = pixels.y1[k];
+      x2[n] = pixels.x2[k];
+      y2[n] = pixels.y2[k];
+      weights[n] = w[k];
+      n += w[k] != 0.0 ? 1 : 0;
+    }
+    groups.push_back({x1.data() + begin, y1.data() + begin, x2.data() + begin, y2.data() + begin,
+                      n - begin});
+  }
+}
 
 SmallEngineSummary SmallEngine::Solve(const SmallEngineOptions& options,
                                       const MotionParameterization& parameterization,
@@ -98,8 +128,9 @@ SmallEngineSummary SmallEngine::Solve(const SmallEngineOptions& options,
   num_iterations_ = 0;
   const int n = parameterization.size();
   Eigen::Map<ParameterVector> best(parameters, n);
-  NormalEquations at(options, matches_, parameterization, weights, prior, prior_unit, &groups_);
-  NormalEquations next = at;
+  packed_.Set(matches_, weights);
+  ParameterEquations at(options, matches_, parameterization, packed_, prior, prior_unit);
+  ParameterEquations next = at;
   at.Evaluate(best);
   if (!at.AllFinite()) return summary;
   summary.usable = true;

@@ -11,7 +11,6 @@
 
 #include "rigel/core/pose.h"
 #include "rigel/minimal/grouped_matches.h"
-#include "rigel/refine/epipolar_residuals.h"
 #include "rigel/refine/loss.h"
 #include "rigel/refine/motion_parameterization.h"
 #include "rigel/refine/prior_residuals.h"
@@ -28,6 +27,15 @@ struct SmallEngineOptions {
   // Minimize(): TranslationForm::kInverseScale instead of a free t, for matches that hardly
   // determine |t|.
   bool inverse_scale = false;
+};
+
+// The matches of weight above zero, group by group: what is left out takes no time.
+struct PackedMatches {
+  // `weights`: grouped order.
+  void Set(const GroupedMatches& matches, const std::vector<double>& weights);
+
+  std::vector<double> x1, y1, x2, y2, weights;
+  std::vector<PixelArrays> groups;  // into the arrays above
 };
 
 struct SmallEngineSummary {
@@ -63,8 +71,8 @@ class SmallEngine {
 
  private:
   const GroupedMatches& matches_;
-  std::vector<GroupLinearization> groups_;
   std::vector<double> weights_;
+  PackedMatches packed_;
   int num_iterations_ = 0;
 };
 

@@ -10,41 +10,35 @@
 #include <Eigen/Geometry>
 
 #include "rigel/core/angles.h"
-#include "rigel/refine/epipolar_residuals.h"
 #include "rigel/refine/normal_equations.h"
 
 namespace rigel {
 
 namespace {
 
-// J'J of the Sampson residuals of one camera pair, each times its weight.
-Matrix6d GroupInformation(const GroupedMatches& matches, const MatchGroup& group,
-                          const GroupLinearization& linear, const double* weights) {
-  double cost = 0.0;
-  ParameterVector gradient = ParameterVector::Zero(6);
-  ParameterMatrix information = ParameterMatrix::Zero(6, 6);
-  AddNormalEquations(SampsonKernelOptions(), linear, matches.Pixels(group), weights, &cost,
-                     &gradient, &information);
-  return information;
-}
+using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-std::vector<GroupLinearization> LinearizeFully(const GroupedMatches& matches, const Pose& pose) {
-  const MotionBasis basis = FullBasis(pose, true);
-  std::vector<GroupLinearization> groups;
-  LinearizeGroups(matches, ResidualKind::kSampson, pose, &basis, &groups);
-  return groups;
+// Of an information matrix with a unit diagonal: what rounding in pixels of some hundred makes of
+// zero stays below this.
+constexpr double kMinEigenvalue = 1e-11;
+
+// J'J of the Sampson residuals of one camera pair, each times its weight.
+Matrix6d GroupInformation(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
+                          const double* weights) {
+  MotionNormalEquations sum;
+  AddNormalEquations(SampsonKernelOptions(), matches, group, matches.Pixels(group), weights, pose,
+                     &sum);
+  return sum.curvature;
 }
 
 }  // namespace
 
 Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<char>& mask,
                             const Pose& pose) {
-  const std::vector<GroupLinearization> linear = LinearizeFully(matches, pose);
   const std::vector<double> weights(mask.begin(), mask.end());
   Matrix6d information = Matrix6d::Zero();
-  for (size_t g = 0; g < linear.size(); ++g) {
-    const MatchGroup& group = matches.groups()[g];
-    information += GroupInformation(matches, group, linear[g], weights.data() + group.begin);
+  for (const MatchGroup& group : matches.groups()) {
+    information += GroupInformation(matches, group, pose, weights.data() + group.begin);
   }
   return information;
 }
@@ -92,7 +86,6 @@ Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<ch
   std::vector<double> weights;
   EpipoleWeights(matches, pose, noise_px, &weights);
   for (size_t k = 0; k < weights.size(); ++k) weights[k] = mask[k] ? weights[k] : 0.0;
-  const std::vector<GroupLinearization> linear = LinearizeFully(matches, pose);
   std::vector<Matrix6d> information(matches.groups().size());
   std::vector<double> baseline;
   Matrix6d sum = Matrix6d::Zero();
@@ -100,7 +93,7 @@ Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<ch
   for (size_t g = 0; g < matches.groups().size(); ++g) {
     const MatchGroup& group = matches.groups()[g];
     information[g] =
-        GroupInformation(matches, group, linear[g], weights.data() + group.begin) / variance;
+        GroupInformation(matches, group, pose, weights.data() + group.begin) / variance;
     sum += information[g];
     const RigCamera& c1 = matches.rig().cameras[group.camera1];
     const RigCamera& c2 = matches.rig().cameras[group.camera2];
@@ -133,8 +126,6 @@ bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis,
   const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
   const Square scaled = scale.asDiagonal() * reduced * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Square> eigen(scaled);
-  // What rounding in pixels of some hundred makes of zero stays below this.
-  constexpr double kMinEigenvalue = 1e-11;
   if (!(eigen.eigenvalues()(0) > kMinEigenvalue)) return false;
   const Square inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
                          eigen.eigenvectors().transpose();
@@ -184,11 +175,25 @@ MotionBasis PriorBasis(const Pose& pose, const Alignment& alignment, bool scale_
 
 double RelativeScaleSigma(const Matrix6d& information, const Pose& pose) {
   const double norm = pose.t.norm();
+  if (!(norm > 0)) return std::numeric_limits<double>::infinity();
+  const Eigen::Vector3d direction = pose.t / norm;
+  // As CovarianceOfBasis() does, but by a Cholesky factor L where that shows the rank to be full:
+  // the trace of the inverse bounds its largest eigenvalue.
+  const Vector6d scale = information.diagonal().cwiseSqrt().cwiseInverse();
+  const Matrix6d scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::LLT<Matrix6d> llt(scaled);
+  if (llt.info() == Eigen::Success) {
+    Matrix6d inverse = Matrix6d::Identity();
+    llt.matrixL().solveInPlace(inverse);
+    if (inverse.squaredNorm() * kMinEigenvalue < 1.0) {
+      const Eigen::Vector3d scaled_direction = scale.tail<3>().cwiseProduct(direction);
+      return (inverse.rightCols<3>() * scaled_direction).norm() / norm;
+    }
+  }
   Matrix6d covariance;
-  if (!(norm > 0) || !CovarianceOfBasis(information, FullBasis(pose, true), &covariance)) {
+  if (!CovarianceOfBasis(information, FullBasis(pose, true), &covariance)) {
     return std::numeric_limits<double>::infinity();
   }
-  const Eigen::Vector3d direction = pose.t / norm;
   return std::sqrt(direction.dot(covariance.block<3, 3>(3, 3) * direction)) / norm;
 }
 

@@ -17,7 +17,11 @@ DEFINE_string(
     solvers, "",
     "names of solvers, comma separated, auto among them (see rigel_estimate); all that the "
     "priors allow if empty");
-DEFINE_string(by, "", "sequence: one more row for each sequence of the files");
+DEFINE_string(
+    by, "",
+    "sequence: the tables of the paper, too: time in RANSAC, median rotation and "
+    "translation direction error, one row a sequence, one column a solver; entries of each "
+    "sequence in --json");
 DEFINE_string(json, "", "write the report (format rigel-report 1) to this file; - is stdout");
 DEFINE_string(csv, "", "write one line a pair and solver to this file; - is stdout");
 DEFINE_bool(per_pair, false,

@@ -1,4 +1,5 @@
 // rigel_estimate: the motions of match files.
+#include <algorithm>
 #include <functional>
 #include <iostream>
 #include <utility>
@@ -9,6 +10,8 @@
 #include "rigel/problems/g2o_file.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/report.h"
+#include "rigel/problems/trajectory_file.h"
+#include "rigel/problems/whole_file.h"
 #include "rigel/refine/solver_choice.h"
 #include "rigel/tools/estimation_flags.h"
 #include "rigel/tools/tool.h"
@@ -23,6 +26,18 @@ DEFINE_string(
     g2o, "",
     "write a pose graph of g2o, files in order one after the other along a drive, to this "
     "file; - is stdout");
+DEFINE_string(
+    kitti_trajectory, "",
+    "chain the motions, files in order along a drive, and write the poses as KITTI does (12 "
+    "numbers a line, body frame) to this file; several trajectories to FILE_0.EXT, FILE_1.EXT, "
+    "...; - is stdout");
+DEFINE_string(tum_trajectory, "", "the same as TUM's tools have it: TIME X Y Z QX QY QZ QW a line");
+DEFINE_bool(truth_trajectory, false,
+            "write the truth's trajectory as well, beside each: FILE_truth.EXT");
+DEFINE_bool(drift, false,
+            "chain the motions and print how far they drift from the truth: KITTI's metric, "
+            "errors of single steps and of the end; as of the trajectory flags where there is a "
+            "truth");
 
 namespace rigel {
 namespace {
@@ -39,14 +54,28 @@ constexpr char kUsage[] =
     "determine: the direction is shown as it is, |t| only where there are matches between "
     "cameras.\n"
     "The JSON and CSV give the motions in full, raw and refined; --g2o chains the refined ones,\n"
-    "with their information, to trajectories.\n";
+    "with their information, to a pose graph, --kitti_trajectory and --tum_trajectory to "
+    "trajectories.\n";
+
+// Flags of outputs, with their files.
+std::vector<std::pair<const char*, std::string>> Outputs() {
+  return {{"json", FLAGS_json},
+          {"csv", FLAGS_csv},
+          {"g2o", FLAGS_g2o},
+          {"kitti_trajectory", FLAGS_kitti_trajectory},
+          {"tum_trajectory", FLAGS_tum_trajectory}};
+}
+
+bool StdoutIsAskedFor() {
+  const auto outputs = Outputs();
+  return std::any_of(outputs.begin(), outputs.end(),
+                     [](const auto& output) { return output.second == "-"; });
+}
 
 // The outputs that ask for stdout: one at most. False with a message if there are more.
 bool StdoutIsAskedForOnce(std::string* error) {
-  const std::pair<const char*, std::string> outputs[] = {
-      {"json", FLAGS_json}, {"csv", FLAGS_csv}, {"g2o", FLAGS_g2o}};
   const char* first = nullptr;
-  for (const auto& [flag, file] : outputs) {
+  for (const auto& [flag, file] : Outputs()) {
     if (file != "-") continue;
     if (first != nullptr) {
       *error = "--" + std::string(flag) + "=-: stdout has that of --" + first +
@@ -54,6 +83,78 @@ bool StdoutIsAskedForOnce(std::string* error) {
       return false;
     }
     first = flag;
+  }
+  return true;
+}
+
+bool Chained() {
+  return FLAGS_drift || !FLAGS_kitti_trajectory.empty() || !FLAGS_tum_trajectory.empty();
+}
+
+// Chains the motions of the report. `positions` as in ChainMotions(). False if
+// there is no trajectory, or none with the truth that --drift needs: told on stderr.
+bool Chain(const std::vector<int>& positions, EstimateReport* report) {
+  std::vector<char> has_inter;
+  for (const MatchCount& count : report->matches) has_inter.push_back(count.any_inter ? 1 : 0);
+  std::vector<std::string> notes;
+  report->trajectories =
+      ChainMotions(report->pairs, report->estimates, has_inter, positions, &notes);
+  for (const std::string& note : notes) std::cerr << "trajectory: " << note << "\n";
+  bool any_truth = false;
+  for (size_t k = 0; k < report->trajectories->size(); ++k) {
+    const Trajectory& trajectory = (*report->trajectories)[k];
+    any_truth = any_truth || !trajectory.truth.empty();
+    const auto count = [&](int pairs, const char* what) {
+      if (pairs == 0) return;
+      std::cerr << "trajectory " << k << ": " << pairs << " of " << trajectory.NumPairs()
+                << (trajectory.NumPairs() == 1 ? " pair " : " pairs ") << what << "\n";
+    };
+    count(trajectory.num_still, "with |t| consistent with zero, taken as zero");
+    count(trajectory.num_stated_lengths, "without scale, of the distance that the file states");
+  }
+  if (report->trajectories->empty()) {
+    std::cerr << "trajectory: no motion to chain\n";
+    return false;
+  }
+  if (any_truth || (!FLAGS_drift && !FLAGS_truth_trajectory)) return true;
+  std::cerr << (FLAGS_drift ? "--drift" : "--truth_trajectory")
+            << ": no trajectory whose pairs all have a truth line\n";
+  return false;
+}
+
+// Writes the trajectories of --kitti_trajectory or --tum_trajectory. False with a message on stderr
+// if that fails.
+bool WriteTrajectories(const std::vector<Trajectory>& trajectories, const std::string& flag,
+                       const std::string& path) {
+  if (path.empty() || trajectories.empty()) return true;
+  const auto format = [&](const std::vector<Pose>& poses, const Trajectory& trajectory) {
+    return flag == "tum_trajectory" ? FormatTumTrajectory(poses, trajectory.times)
+                                    : FormatKittiTrajectory(poses);
+  };
+  if (path == "-") {
+    if (trajectories.size() == 1) {
+      return WriteOutput(path, format(trajectories[0].estimate, trajectories[0]));
+    }
+    std::cerr << "--" << flag << "=-: there are " << trajectories.size()
+              << " trajectories, stdout takes one; name a file\n";
+    return false;
+  }
+  std::string error;
+  for (size_t k = 0; k < trajectories.size(); ++k) {
+    const Trajectory& t = trajectories[k];
+    const std::string file = TrajectoryPath(path, k, trajectories.size(), false);
+    const std::string truth = TrajectoryPath(path, k, trajectories.size(), true);
+    if (!WriteWholeFile(file, format(t.estimate, t), &error) ||
+        (FLAGS_truth_trajectory && !t.truth.empty() &&
+         !WriteWholeFile(truth, format(t.truth, t), &error))) {
+      std::cerr << error << "\n";
+      return false;
+    }
+    if (trajectories.size() > 1) {
+      std::cerr << "--" << flag << ": trajectory " << k << ", " << t.NumPairs()
+                << (t.NumPairs() == 1 ? " pair" : " pairs") << ", is in " << PrintablePath(file)
+                << "\n";
+    }
   }
   return true;
 }
@@ -71,6 +172,12 @@ int Run() {
   if (!StdoutIsAskedForOnce(&error)) return UsageError(error);
   if (!FLAGS_g2o.empty() && !estimate.refine_motion) {
     return UsageError("--g2o: without a refinement (--refine=none) a motion has no information");
+  }
+  if (FLAGS_truth_trajectory && FLAGS_kitti_trajectory.empty() && FLAGS_tum_trajectory.empty()) {
+    return UsageError("--truth_trajectory: needs --kitti_trajectory or --tum_trajectory");
+  }
+  if (FLAGS_truth_trajectory && (FLAGS_kitti_trajectory == "-" || FLAGS_tum_trajectory == "-")) {
+    return UsageError("--truth_trajectory: stdout takes one trajectory; name a file");
   }
 
   const InputFiles input = ListInput();
@@ -116,13 +223,19 @@ int Run() {
     }
   }
 
+  report.refined = estimate.refine_motion;
+  // An empty shard has nothing to chain, and nothing is wrong with it.
+  if (Chained() && !report.pairs.empty()) ok = Chain(positions, &report) && ok;
   // stdout belongs to the machine if it asked for it.
-  if (FLAGS_json != "-" && FLAGS_csv != "-" && FLAGS_g2o != "-") {
+  if (!StdoutIsAskedFor()) {
     std::cout << EstimateTable(report);
+    const std::string drift = DriftTable(report);
+    if (!drift.empty()) std::cout << "\n" << drift;
     ok = FlushStdout() && ok;
   }
   std::vector<std::string> output_flags = OutputFlags();
-  output_flags.push_back("g2o");
+  output_flags.insert(output_flags.end(),
+                      {"g2o", "kitti_trajectory", "tum_trajectory", "truth_trajectory", "drift"});
   report.options = FlagValues(output_flags);
   const bool times = TimesAreGiven();
   if (!FLAGS_json.empty()) ok = WriteOutput(FLAGS_json, EstimateJson(report, times)) && ok;
@@ -132,6 +245,11 @@ int Run() {
     const std::string graph = FormatG2o(report.pairs, report.estimates, positions, &notes);
     for (const std::string& note : notes) std::cerr << "--g2o: " << note << "\n";
     ok = WriteOutput(FLAGS_g2o, graph) && ok;
+  }
+  if (report.trajectories) {
+    const std::vector<Trajectory>& trajectories = *report.trajectories;
+    ok = WriteTrajectories(trajectories, "kitti_trajectory", FLAGS_kitti_trajectory) && ok;
+    ok = WriteTrajectories(trajectories, "tum_trajectory", FLAGS_tum_trajectory) && ok;
   }
   return ok ? kExitDone : kExitFailed;
 }

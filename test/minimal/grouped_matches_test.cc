@@ -316,6 +316,28 @@ TEST(GroupedMatches, AMotionThatIsNotFiniteWinsNoMatch) {
   }
 }
 
+TEST(GroupedMatches, EvenSubsetIsTheSameAsOfTheMatchesItHolds) {
+  const FramePair pair = MakePair(101, 3);
+  const GroupedMatches all(pair.rig, pair.matches);
+  for (const size_t count : {0, 1, 3, 40, 101, 500}) {
+    const GroupedMatches subset = all.EvenSubset(count);
+    ASSERT_EQ(subset.size(), static_cast<int>(std::min<size_t>(count, 101)));
+    const GroupedMatches expected(pair.rig, subset.matches());
+    ASSERT_EQ(subset.groups().size(), expected.groups().size());
+    std::vector<double> errors, expected_errors;
+    subset.SquaredErrors(*pair.truth, &errors);
+    expected.SquaredErrors(*pair.truth, &expected_errors);
+    EXPECT_EQ(errors, expected_errors);
+    for (int k = 0; k < subset.size(); ++k) {
+      EXPECT_EQ(subset.original(k), k);
+      EXPECT_EQ(subset.rays(k).ray1.x, expected.rays(k).ray1.x);
+      EXPECT_EQ(subset.rays(k).ray2.s, expected.rays(k).ray2.s);
+      EXPECT_EQ(subset.matches()[k].pixel1,
+                all.matches()[k * 101 / static_cast<int>(subset.size())].pixel1);
+    }
+  }
+}
+
 TEST(GroupedMatches, NoMatches) {
   const FramePair pair = MakePair(0, 7);
   const GroupedMatches grouped(pair.rig, pair.matches);

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "rigel/refine/epipolar_residuals.h"
+#include "rigel/refine/normal_equations.h"
 #include "rigel/refine/uncertainty.h"
 #include "rigel/test/refine/refine_scene.h"
 
@@ -96,6 +97,15 @@ Expected SumByKernel(const Problem& problem, const SampsonKernelOptions& options
   return sum;
 }
 
+Expected SumByMotion(const Problem& problem, const SampsonKernelOptions& options) {
+  MotionNormalEquations sum;
+  for (const MatchGroup& group : problem.matches.groups()) {
+    AddNormalEquations(options, problem.matches, group, problem.matches.Pixels(group),
+                       problem.weights.data() + group.begin, problem.pose, &sum);
+  }
+  return {sum.cost, sum.gradient, sum.curvature};
+}
+
 TEST(SampsonKernel, SumsTheResidualsAndJacobiansOfTheMatches) {
   for (const LossKind loss : kLosses) {
     for (const Curvature curvature : {Curvature::kReweighted, Curvature::kNewton}) {
@@ -107,15 +117,17 @@ TEST(SampsonKernel, SumsTheResidualsAndJacobiansOfTheMatches) {
         options.loss_scale = 2.0;
         options.curvature = curvature;
         const Expected expected = SumOneByOne(problem, options);
-        const Expected sum = SumByKernel(problem, options, BestCpuPath());
-        EXPECT_NEAR(sum.cost, expected.cost, 1e-11 * expected.cost);
-        const Eigen::Matrix<double, 6, 1> scale =
-            expected.curvature.diagonal().cwiseSqrt().cwiseMax(1e-3);
-        const auto unit = scale.cwiseInverse().eval();
-        EXPECT_LT((sum.gradient - expected.gradient).cwiseProduct(unit).norm(), 1e-8);
-        EXPECT_LT(
-            (unit.asDiagonal() * (sum.curvature - expected.curvature) * unit.asDiagonal()).norm(),
-            1e-8);
+        for (const Expected& sum :
+             {SumByKernel(problem, options, BestCpuPath()), SumByMotion(problem, options)}) {
+          EXPECT_NEAR(sum.cost, expected.cost, 1e-11 * expected.cost);
+          const Eigen::Matrix<double, 6, 1> scale =
+              expected.curvature.diagonal().cwiseSqrt().cwiseMax(1e-3);
+          const auto unit = scale.cwiseInverse().eval();
+          EXPECT_LT((sum.gradient - expected.gradient).cwiseProduct(unit).norm(), 1e-8);
+          EXPECT_LT(
+              (unit.asDiagonal() * (sum.curvature - expected.curvature) * unit.asDiagonal()).norm(),
+              1e-8);
+        }
       }
     }
   }
@@ -146,6 +158,26 @@ TEST(SampsonKernel, EveryPathGivesTheSameBits) {
       GradientWeights(pixels, F.data(), 1e-3, b.data(), CpuPath::kAvx2);
       EXPECT_EQ(a, b);
     }
+  }
+}
+
+TEST(SampsonKernel, ProjectionGivesTheSameBitsOnEveryPath) {
+  if (BestCpuPath() == CpuPath::kBaseline) GTEST_SKIP() << "this machine has one path";
+  Random random(5);
+  for (int trial = 0; trial < 100; ++trial) {
+    SampsonSums sums;
+    for (double& g : sums.g) g = random.Normal();
+    for (double& h : sums.H) h = random.Normal();
+    FundamentalDerivatives D{};
+    for (auto& row : D.d) {
+      for (int m = 0; m < 6; ++m) row[m] = random.Normal();
+    }
+    double baseline[42], avx2[42];
+    for (int i = 0; i < 42; ++i) baseline[i] = avx2[i] = i;
+    AddProjected(sums, D, baseline, baseline + 6, CpuPath::kBaseline);
+    AddProjected(sums, D, avx2, avx2 + 6, CpuPath::kAvx2);
+    EXPECT_EQ(std::memcmp(baseline, avx2, sizeof(avx2)), 0);
+    EXPECT_NE(baseline[41], 41.0);
   }
 }
 

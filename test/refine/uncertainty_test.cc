@@ -170,6 +170,19 @@ TEST(Uncertainty, ScaleSigmaTellsInterFromIntraCameraMatches) {
           SampsonInformation(matches, AllOf(matches), *pair.truth) / 0.25, *pair.truth));
     }
   }
+  // The short way through a Cholesky factor gives what the covariance says.
+  for (const int inter : {0, 1}) {
+    SceneOptions options;
+    options.inter_share = inter;
+    const FramePair pair = ScenePair(options, 7);
+    const GroupedMatches matches(pair.rig, pair.matches);
+    const Matrix6d information = SampsonInformation(matches, AllOf(matches), *pair.truth) / 0.25;
+    Matrix6d covariance;
+    ASSERT_TRUE(CovarianceOfBasis(information, FullBasis(*pair.truth, true), &covariance));
+    const Eigen::Vector3d t = pair.truth->t;
+    const double expected = std::sqrt(t.dot(covariance.block<3, 3>(3, 3) * t)) / t.squaredNorm();
+    EXPECT_NEAR(RelativeScaleSigma(information, *pair.truth), expected, 1e-6 * expected);
+  }
   EXPECT_GT(MedianOf(sigma[0]), 0.2);
   EXPECT_LT(MedianOf(sigma[1]), 0.01);
   EXPECT_GT(MedianOf(sigma[1]), 0.001);

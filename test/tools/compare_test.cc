@@ -160,9 +160,18 @@ TEST_F(CompareTest, BySequenceAddsAnEntryForEachSequence) {
   EXPECT_THAT(entries, UnorderedElementsAre("4pt all 5", "4pt a 1", "4pt b 2", "4pt-axis all 5",
                                             "4pt-axis a 1", "4pt-axis b 2"));
   const Outcome table = RunTool("compare", args + Args{"--by=sequence"});
-  EXPECT_THAT(table.out, AllOf(HasSubstr("all pairs, 5 of them"), HasSubstr("sequence a, 1"),
-                               HasSubstr("sequence b, 2")));
-  EXPECT_THAT(table.out, HasSubstr("sequence a, 1 pair\n"));
+  EXPECT_THAT(table.out, AllOf(HasSubstr("all pairs, 5 of them"), HasSubstr("time [ms], mean"),
+                               HasSubstr("\nrotation error [deg], median\n"),
+                               HasSubstr("\ntranslation direction error [deg], median\n")));
+  int rows = 0;
+  for (const std::string& line : Lines(table.out)) {
+    rows += line.substr(0, 2) == "a " ? 1 : 0;
+  }
+  EXPECT_EQ(rows, 3) << table.out;
+  // None of them is a sequence or a solver of the paper.
+  EXPECT_THAT(table.out, Not(HasSubstr("paper")));
+  const Outcome no_times = RunTool("compare", args + Args{"--by=sequence", "--no_times"});
+  EXPECT_THAT(no_times.out, Not(HasSubstr("time [ms], mean")));
   EXPECT_THAT(table.err, IsEmpty());
   EXPECT_EXIT_CODE(RunTool("compare", args + Args{"--by=camera"}), 2);
 }

@@ -35,21 +35,30 @@ const Args kEstimationFlags = {"confidence",
                                "use_prior_in_refine"};
 
 std::map<std::string, Args> FlagsOfTools() {
-  return {{"benchmark",
-           {"json", "matches", "num_cameras", "pairs", "prior", "random_axis", "ransac", "refine",
-            "rotation_deg", "seed", "solvers", "trials"}},
-          {"compare", kEstimationFlags + Args{"by", "csv", "json", "merge", "per_pair", "solvers"}},
-          {"estimate", kEstimationFlags + Args{"csv", "g2o", "json", "solver"}},
-          {"simulate",
-           {"every", "inter_share", "match_scores", "motion", "moving_share", "noise_px",
-            "num_cameras", "num_matches", "outlier_share", "output", "pairs", "poses",
-            "rotation_axis", "rotation_deg", "seed", "threads"}}};
+  return {
+      {"benchmark",
+       {"json", "matches", "num_cameras", "pairs", "prior", "random_axis", "ransac", "refine",
+        "rotation_deg", "seed", "solvers", "trials"}},
+      {"compare", kEstimationFlags + Args{"by", "csv", "json", "merge", "per_pair", "solvers"}},
+      {"calibrate_prior", kEstimationFlags + Args{"in_place", "json", "lines", "output", "solver"}},
+      {"estimate", kEstimationFlags + Args{"csv", "drift", "g2o", "json", "kitti_trajectory",
+                                           "solver", "truth_trajectory", "tum_trajectory"}},
+      {"match",
+       {"euroc_root", "features", "first", "kitti_root", "last", "max_features", "output", "ratio",
+        "resume", "sequence", "stride", "threads"}},
+      {"simulate",
+       {"every", "inter_share", "match_scores", "motion", "moving_share", "noise_px", "num_cameras",
+        "num_matches", "outlier_share", "output", "pairs", "poses", "rotation_axis", "rotation_deg",
+        "seed", "threads"}}};
 }
 
 // A run that would succeed but for what is added to it and that the files are not there, nor can be
 // made: who looks at files before the flags fails with 1 instead of 2.
 Args Minimal(const std::string& tool) {
   if (tool == "benchmark") return {"--solvers=4pt", "--trials=2"};
+  if (tool == "match") {
+    return {"--euroc_root=/proc/nonexistent/of/rigel", "--output=/proc/nonexistent/of/rigel"};
+  }
   if (tool == "simulate") return {"--output=/proc/nonexistent/of/rigel", "--pairs=1"};
   return {"--matches=/proc/nonexistent/of/rigel"};
 }
@@ -62,10 +71,17 @@ void ExpectUsageError(const std::string& tool, const Args& wrong, const std::str
   EXPECT_THAT(run.out, IsEmpty()) << run.command;
 }
 
+Args Tools() {
+  Args tools = {"benchmark", "calibrate_prior", "compare", "estimate", "simulate"};
+#ifdef RIGEL_HAS_MATCH
+  tools.push_back("match");
+#endif
+  return tools;
+}
+
 class EachTool : public testing::TestWithParam<std::string> {};
 
-INSTANTIATE_TEST_SUITE_P(Tools, EachTool,
-                         testing::Values("benchmark", "compare", "estimate", "simulate"),
+INSTANTIATE_TEST_SUITE_P(Tools, EachTool, testing::ValuesIn(Tools()),
                          [](const auto& tool) { return tool.param; });
 
 TEST_P(EachTool, HelpExplainsItsOwnFlagsAndNoOthers) {
@@ -124,7 +140,7 @@ TEST_P(EachTool, UsageErrorPointsToHelp) {
 }
 
 TEST(Flags, ValueOutOfRangeIsAUsageErrorBeforeAnyFileIsRead) {
-  for (const char* tool : {"estimate", "compare"}) {
+  for (const char* tool : {"calibrate_prior", "estimate", "compare"}) {
     const std::pair<const char*, const char*> wrong[] = {
         {"--use=both", "all, intra or inter"},
         {"--prior=imu", "file, body or truth"},
@@ -241,6 +257,13 @@ TEST_F(Outputs, UnwritableFileFailsAndTheTableIsThereAllTheSame) {
       }
     }
   }
+  for (const char* file : {"/proc/nonexistent/x", "/dev/full"}) {
+    const Outcome run =
+        RunTool("calibrate_prior", {"--matches=" + matches, std::string("--json=") + file});
+    EXPECT_EXIT_CODE(run, 1);
+    EXPECT_THAT(run.err, HasSubstr(file + std::string(": cannot be")));
+    EXPECT_THAT(run.out, HasSubstr("motion plane"));
+  }
   const Outcome run = RunTool("estimate", {"--matches=" + matches, "--g2o=/dev/full"});
   EXPECT_EXIT_CODE(run, 1);
   EXPECT_THAT(run.err, HasSubstr("/dev/full: cannot be"));
@@ -249,11 +272,15 @@ TEST_F(Outputs, UnwritableFileFailsAndTheTableIsThereAllTheSame) {
 
 TEST_F(Outputs, UnwritableStdoutFails) {
   const std::string matches = Simulate("in", {"--pairs=1", "--num_matches=30"});
+  const std::string inter = Simulate("inter", {"--pairs=1", "--inter_share=0.5"});
   const std::pair<const char*, Args> runs[] = {
       {"estimate", {"--matches=" + matches}},
       {"estimate", {"--matches=" + matches, "--json=-"}},
       {"estimate", {"--matches=" + matches, "--csv=-"}},
       {"estimate", {"--matches=" + matches, "--g2o=-"}},
+      {"estimate", {"--matches=" + inter, "--kitti_trajectory=-"}},
+      {"calibrate_prior", {"--matches=" + matches}},
+      {"calibrate_prior", {"--matches=" + matches, "--json=-"}},
       {"compare", {"--matches=" + matches, "--solvers=4pt"}},
       {"compare", {"--matches=" + matches, "--solvers=4pt", "--json=-"}},
       {"benchmark", {"--solvers=4pt", "--trials=2"}},

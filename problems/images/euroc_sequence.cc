@@ -1,0 +1,284 @@
+#include "rigel/problems/images/euroc_sequence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <system_error>
+
+#include <yaml-cpp/yaml.h>
+
+#include "rigel/problems/images/text_lines.h"
+#include "rigel/problems/match_file.h"
+
+namespace rigel {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMaxRotationError = 1e-3;    // of any element of R'R - I, and of |q| - 1
+constexpr int64_t kMaxTruthGap = 50'000'000;  // ns
+constexpr double kSecondsPerNanosecond = 1e-9;
+
+bool IsDirectory(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+// The node's numbers. Throws YAML::Exception with what was expected.
+std::vector<double> Numbers(const YAML::Node& node, const std::string& key, size_t count) {
+  if (!node.IsDefined()) {
+    throw YAML::RepresentationException(YAML::Mark::null_mark(), "the key " + key + " is missing");
+  }
+  const std::string expected =
+      key + ": expected " + std::to_string(count) + " finite numbers in brackets";
+  if (!node.IsSequence() || node.size() != count) {
+    throw YAML::RepresentationException(node.Mark(), expected);
+  }
+  std::vector<double> numbers;
+  for (const YAML::Node& item : node) {
+    double number;
+    if (!item.IsScalar() || !ParseFinite(item.Scalar(), &number)) {
+      throw YAML::RepresentationException(item.Mark(), expected);
+    }
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+void ExpectWord(const YAML::Node& sensor, const std::string& key,
+                const std::vector<std::string>& words) {
+  const YAML::Node node = sensor[key];
+  if (!node.IsDefined()) {
+    throw YAML::RepresentationException(YAML::Mark::null_mark(), "the key " + key + " is missing");
+  }
+  const std::string word = node.IsScalar() ? node.Scalar() : "";
+  if (std::find(words.begin(), words.end(), word) == words.end()) {
+    throw YAML::RepresentationException(
+        node.Mark(), key + " is " + Quoted(word) + ", expected " + words.front());
+  }
+}
+
+// Throws YAML::Exception.
+ImageCamera ParseCamera(const YAML::Node& sensor) {
+  if (!sensor.IsMap()) {
+    throw YAML::RepresentationException(YAML::Mark::null_mark(), "not a list of keys and values");
+  }
+  ImageCamera result;
+  RigCamera& camera = result.camera;
+  ExpectWord(sensor, "camera_model", {"pinhole"});
+  ExpectWord(sensor, "distortion_model", {"radial-tangential", "radtan"});
+
+  const YAML::Node pose = sensor["T_BS"];
+  const bool has_data = pose.IsDefined() && pose.IsMap();
+  const std::vector<double> T =
+      Numbers(has_data ? pose["data"] : YAML::Node(YAML::NodeType::Undefined), "T_BS: data", 16);
+  Eigen::Matrix4d body_from_camera;
+  for (int k = 0; k < 16; ++k) body_from_camera(k / 4, k % 4) = T[k];
+  const Eigen::Matrix3d R = body_from_camera.topLeftCorner<3, 3>();
+  const Eigen::Matrix3d off = R.transpose() * R - Eigen::Matrix3d::Identity();
+  if (!(off.cwiseAbs().maxCoeff() <= kMaxRotationError) || !(R.determinant() > 0) ||
+      body_from_camera.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+    throw YAML::RepresentationException(pose.Mark(), "T_BS: data is not a rigid motion");
+  }
+  camera.Q = Eigen::Quaterniond(R).normalized().toRotationMatrix();
+  camera.s = body_from_camera.topRightCorner<3, 1>();
+
+  const std::vector<double> k = Numbers(sensor["intrinsics"], "intrinsics", 4);
+  if (!(k[0] > 0) || !(k[1] > 0)) {
+    throw YAML::RepresentationException(sensor["intrinsics"].Mark(),
+                                        "intrinsics: expected positive focal lengths");
+  }
+  const std::vector<double> size = Numbers(sensor["resolution"], "resolution", 2);
+  for (const double pixels : size) {
+    if (!(pixels >= 1 && pixels <= 1e6) || pixels != std::floor(pixels)) {
+      throw YAML::RepresentationException(sensor["resolution"].Mark(),
+                                          "resolution: expected the width and height in pixels");
+    }
+  }
+  camera.intrinsics = {
+      k[0], k[1], k[2], k[3], static_cast<int>(size[0]), static_cast<int>(size[1])};
+  const std::vector<double> d =
+      Numbers(sensor["distortion_coefficients"], "distortion_coefficients", 4);
+  result.distortion = RadialTangential{d[0], d[1], d[2], d[3]};
+  return result;
+}
+
+bool ReadSensor(const std::string& path, ImageCamera* camera, std::string* error) {
+  try {
+    *camera = ParseCamera(YAML::LoadFile(path));
+    return true;
+  } catch (const YAML::BadFile&) {
+    *error = PrintablePath(path) + ": cannot be opened";
+  } catch (const YAML::Exception& exception) {
+    *error = PrintablePath(path) +
+             (exception.mark.is_null() ? "" : ":" + std::to_string(exception.mark.line + 1)) +
+             ": " + exception.msg;
+  } catch (const std::exception& exception) {
+    *error = PrintablePath(path) + ": " + exception.what();
+  }
+  return false;
+}
+
+using Images = std::map<int64_t, std::string>;  // time stamp, path
+
+bool ReadImageList(const fs::path& camera, Images* images, std::string* error) {
+  const std::string path = (camera / "data.csv").string();
+  std::vector<TextLine> lines;
+  if (!ReadTextLines(path, &lines, error)) return false;
+  for (const TextLine& line : lines) {
+    const std::vector<std::string_view> words = SplitAtCommas(line.text);
+    int64_t time;
+    if (words.size() != 2 || !ParseTimestamp(words[0], &time) || words[1].empty()) {
+      *error = Where(path, line) + ": " + Quoted(line.text) +
+               ", expected a time stamp in nanoseconds, a comma and a file name";
+      return false;
+    }
+    if (!images->emplace(time, (camera / "data" / words[1]).string()).second) {
+      *error = Where(path, line) + ": the time stamp " + std::to_string(time) + " occurs twice";
+      return false;
+    }
+  }
+  if (images->empty()) {
+    *error = PrintablePath(path) + ": there is no image in it";
+    return false;
+  }
+  return true;
+}
+
+using Poses = std::map<int64_t, Pose>;
+
+bool ReadTruth(const std::string& path, Poses* poses, std::string* error) {
+  constexpr size_t kColumns = 8;  // those that are used
+  std::vector<TextLine> lines;
+  if (!ReadTextLines(path, &lines, error)) return false;
+  for (const TextLine& line : lines) {
+    const std::vector<std::string_view> words = SplitAtCommas(line.text);
+    if (words.size() < kColumns) {
+      *error = Where(path, line) + ": " + std::to_string(words.size()) +
+               " columns, expected at least 8: time stamp, p x y z, q w x y z";
+      return false;
+    }
+    int64_t time;
+    if (!ParseTimestamp(words[0], &time)) {
+      *error = Where(path, line) + ": " + Quoted(words[0]) + ", expected a time stamp in ns";
+      return false;
+    }
+    double v[kColumns];
+    for (size_t k = 1; k < kColumns; ++k) {
+      if (!ParseFinite(words[k], &v[k])) {
+        *error = Where(path, line) + ": column " + std::to_string(k + 1) + " is " +
+                 Quoted(words[k]) + ", expected a finite number";
+        return false;
+      }
+    }
+    const Eigen::Quaterniond q(v[4], v[5], v[6], v[7]);
+    if (!(std::abs(q.norm() - 1.0) <= kMaxRotationError)) {
+      *error = Where(path, line) + ": the quaternion is not of unit length";
+      return false;
+    }
+    (*poses)[time] = Pose::FromQuaternion(q, {v[1], v[2], v[3]});
+  }
+  return true;
+}
+
+std::optional<Pose> Interpolate(const Poses& poses, int64_t time) {
+  const auto after = poses.lower_bound(time);
+  if (after == poses.end()) return std::nullopt;
+  if (after->first == time) return after->second;
+  if (after == poses.begin()) return std::nullopt;
+  const auto before = std::prev(after);
+  const int64_t gap = after->first - before->first;
+  if (gap > kMaxTruthGap) return std::nullopt;
+  const double share = static_cast<double>(time - before->first) / static_cast<double>(gap);
+  const Eigen::Quaterniond q = before->second.Quaternion().slerp(share, after->second.Quaternion());
+  return Pose::FromQuaternion(q, (1 - share) * before->second.t + share * after->second.t);
+}
+
+// A name that can stand in a match file: no blanks, printable.
+std::string SequenceName(const fs::path& mav) {
+  std::error_code code;
+  fs::path full = fs::canonical(mav, code);
+  if (code) full = mav;
+  std::string name = full.filename().string();
+  if (name == "mav0") name = full.parent_path().filename().string();
+  for (char& c : name) {
+    if (c <= ' ' || c > '~') c = '_';
+  }
+  return name.empty() ? "euroc" : name;
+}
+
+// How many images of a camera have no partner; empty if none.
+std::string LeftOut(const std::string& camera, size_t left_out, size_t all,
+                    const std::string& other) {
+  if (left_out == 0) return "";
+  return camera + ": " + std::to_string(left_out) + " of " + std::to_string(all) +
+         " images are left out: no image of " + other + " has their time stamp";
+}
+
+}  // namespace
+
+bool ReadEurocSequence(const std::string& root, ImageSequence* sequence, std::string* error) {
+  const fs::path mav =
+      IsDirectory(fs::path(root) / "mav0") ? fs::path(root) / "mav0" : fs::path(root);
+  if (!IsDirectory(mav / "cam0") || !IsDirectory(mav / "cam1")) {
+    *error = PrintablePath(root) +
+             ": expected EuRoC's folder mav0 with cam0 and cam1, or the folder that holds mav0";
+    return false;
+  }
+  ImageSequence result;
+  result.name = SequenceName(mav);
+  result.world_down = -Eigen::Vector3d::UnitZ();
+
+  Images images[2];
+  for (int k = 0; k < 2; ++k) {
+    const fs::path camera = mav / ("cam" + std::to_string(k));
+    result.cameras.emplace_back();
+    if (!ReadSensor((camera / "sensor.yaml").string(), &result.cameras.back(), error) ||
+        !ReadImageList(camera, &images[k], error)) {
+      return false;
+    }
+  }
+  std::vector<int64_t> times;
+  for (const auto& [time, path] : images[0]) {
+    const auto partner = images[1].find(time);
+    if (partner == images[1].end()) continue;
+    times.push_back(time);
+    ImageFrame frame;
+    frame.images = {path, partner->second};
+    frame.time = static_cast<double>(time) * kSecondsPerNanosecond;
+    result.frames.push_back(std::move(frame));
+  }
+  if (times.empty()) {
+    *error = PrintablePath(mav.string()) + ": no image of cam0 has a time stamp of cam1";
+    return false;
+  }
+  for (int k = 0; k < 2; ++k) {
+    result.notes.push_back(
+        LeftOut(PrintablePath((mav / ("cam" + std::to_string(k)) / "data.csv").string()),
+                images[k].size() - times.size(), images[k].size(), k == 0 ? "cam1" : "cam0"));
+  }
+
+  const std::string truth_path = (mav / "state_groundtruth_estimate0" / "data.csv").string();
+  std::error_code ignored;
+  if (fs::exists(truth_path, ignored)) {
+    Poses poses;
+    if (!ReadTruth(truth_path, &poses, error)) return false;
+    size_t without = 0;
+    for (size_t k = 0; k < times.size(); ++k) {
+      result.frames[k].world_from_body = Interpolate(poses, times[k]);
+      if (!result.frames[k].world_from_body) ++without;
+    }
+    if (without > 0) {
+      result.notes.push_back(PrintablePath(truth_path) + ": " + std::to_string(without) + " of " +
+                             std::to_string(times.size()) +
+                             " frames lie outside it or in a gap of it and get no truth");
+    }
+  }
+  result.notes.erase(std::remove(result.notes.begin(), result.notes.end(), ""), result.notes.end());
+  *sequence = std::move(result);
+  return true;
+}
+
+}  // namespace rigel

@@ -1,0 +1,53 @@
+// Key points of images and their matches.
+//
+// OpenCV may throw; nothing here does: what it throws becomes a message.
+#ifndef RIGEL_PROBLEMS_IMAGES_IMAGE_FEATURES_H_
+#define RIGEL_PROBLEMS_IMAGES_IMAGE_FEATURES_H_
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+
+#include "rigel/core/match.h"
+#include "rigel/problems/images/image_sequence.h"
+
+namespace rigel {
+
+enum class FeatureType { kSift, kOrb };
+
+const char* FeatureTypeName(FeatureType type);
+bool ParseFeatureType(const std::string& name, FeatureType* type);
+
+struct FeatureOptions {
+  FeatureType type = FeatureType::kSift;
+  int max_features = 2000;  // of an image, the strongest; 1 to 20000
+  // A match's nearest descriptor is at most this share of the distance of the second nearest, seen
+  // from either image; 1 keeps all.
+  double ratio = 0.8;
+
+  bool IsValid(std::string* error) const;
+};
+
+struct ImageFeatures {
+  int width = 0, height = 0;
+  // Undistorted. The centre of the first pixel is (0, 0), as it is for the principal point.
+  std::vector<Eigen::Vector2d> pixels;
+  cv::Mat descriptors;  // a row a pixel: 16-bit integers for SIFT, bits for ORB
+};
+
+// Reads an image as grey and finds its key points. The same image gives the same features. False
+// with a message if the file is not an image, or not of the camera's size where that is known.
+bool ExtractFeatures(const FeatureOptions& options, const ImageCamera& camera,
+                     const std::string& path, ImageFeatures* features, std::string* error);
+
+// Appends the matches of two images that are each other's nearest and pass the ratio test; the
+// score is the ratio. Key points of several orientations are one point: a pair of pixels occurs
+// once, with its best score. Sorted by pixels.
+void AppendMatches(const FeatureOptions& options, int camera1, const ImageFeatures& features1,
+                   int camera2, const ImageFeatures& features2, std::vector<Match>* matches);
+
+}  // namespace rigel
+
+#endif  // RIGEL_PROBLEMS_IMAGES_IMAGE_FEATURES_H_

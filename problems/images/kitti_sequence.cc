@@ -1,0 +1,196 @@
+#include "rigel/problems/images/kitti_sequence.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include "rigel/problems/images/text_lines.h"
+#include "rigel/problems/kitti_poses.h"
+#include "rigel/problems/match_file.h"
+
+namespace rigel {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kDigits = 6;  // of an image's name
+
+std::string ImageName(int frame) {
+  char name[32];
+  std::snprintf(name, sizeof(name), "%0*d.png", kDigits, frame);
+  return name;
+}
+
+// -1 if it is not the name of an image.
+int FrameOfImage(const std::string& name) {
+  int frame = -1;
+  std::from_chars(name.data(), name.data() + name.size(), frame);
+  return frame >= 0 && name == ImageName(frame) ? frame : -1;
+}
+
+bool IsDirectory(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+bool Exists(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+// The highest number of an image, -1 if there is none.
+bool HighestFrame(const fs::path& directory, int* highest, std::string* error) {
+  *highest = -1;
+  std::error_code code;
+  fs::directory_iterator entry(directory, code);
+  for (; !code && entry != fs::directory_iterator(); entry.increment(code)) {
+    *highest = std::max(*highest, FrameOfImage(entry->path().filename().string()));
+  }
+  if (!code) return true;
+  *error = PrintablePath(directory.string()) + ": cannot be listed: " + code.message();
+  return false;
+}
+
+// A rectified camera, P = K [I | t] with t = camera_from_camera0.
+bool ParseProjection(std::string_view numbers, RigCamera* camera, std::string* error) {
+  const std::vector<std::string_view> words = SplitAtBlanks(numbers);
+  std::array<double, 12> p;
+  if (words.size() != p.size()) {
+    *error = std::to_string(words.size()) + " numbers, expected 12: the rows of a 3x4 matrix";
+    return false;
+  }
+  for (size_t k = 0; k < p.size(); ++k) {
+    if (!ParseFinite(words[k], &p[k])) {
+      *error = "number " + std::to_string(k + 1) + " is " + Quoted(words[k]) +
+               ", expected a finite number";
+      return false;
+    }
+  }
+  if (!(p[0] > 0) || !(p[5] > 0) || p[1] != 0 || p[4] != 0 || p[8] != 0 || p[9] != 0 ||
+      p[10] != 1) {
+    *error = "expected the projection of a rectified camera: FX 0 CX A 0 FY CY B 0 0 1 C";
+    return false;
+  }
+  camera->intrinsics.fx = p[0];
+  camera->intrinsics.fy = p[5];
+  camera->intrinsics.cx = p[2];
+  camera->intrinsics.cy = p[6];
+  const Eigen::Vector3d t((p[3] - p[2] * p[11]) / p[0], (p[7] - p[6] * p[11]) / p[5], p[11]);
+  camera->Q.setIdentity();
+  // 0 - t, and not -t: no minus sign before the zeros of the left camera.
+  camera->s = Eigen::Vector3d::Zero() - t;
+  return true;
+}
+
+bool ReadCalibration(const std::string& path, const std::array<int, 2>& numbers,
+                     std::vector<ImageCamera>* cameras, std::string* error) {
+  std::vector<TextLine> lines;
+  if (!ReadTextLines(path, &lines, error)) return false;
+  for (const int number : numbers) {
+    const std::string key = "P" + std::to_string(number) + ":";
+    const auto line = std::find_if(lines.begin(), lines.end(), [&](const TextLine& candidate) {
+      return candidate.text.compare(0, key.size(), key) == 0;
+    });
+    if (line == lines.end()) {
+      *error = PrintablePath(path) + ": no line '" + key + "', expected " + key +
+               " and the 12 numbers of camera " + std::to_string(number) + "'s 3x4 projection";
+      return false;
+    }
+    ImageCamera camera;
+    std::string what;
+    if (!ParseProjection(std::string_view(line->text).substr(key.size()), &camera.camera, &what)) {
+      *error = Where(path, *line) + ": " + key + " " + what;
+      return false;
+    }
+    cameras->push_back(camera);
+  }
+  return true;
+}
+
+bool ReadTimes(const std::string& path, std::vector<double>* times, std::string* error) {
+  std::vector<TextLine> lines;
+  if (!ReadTextLines(path, &lines, error)) return false;
+  for (const TextLine& line : lines) {
+    double time;
+    if (!ParseFinite(line.text, &time)) {
+      *error = Where(path, line) + ": " + Quoted(line.text) + ", expected a time in seconds";
+      return false;
+    }
+    times->push_back(time);
+  }
+  return true;
+}
+
+// What a file with a line a frame says about a sequence with more frames; empty if it has enough.
+std::string TooShort(const std::string& path, size_t lines, size_t frames, const char* what) {
+  if (lines >= frames) return "";
+  return PrintablePath(path) + ": " + std::to_string(lines) + " lines for " +
+         std::to_string(frames) + " frames; those beyond get no " + what;
+}
+
+}  // namespace
+
+bool ReadKittiSequence(const std::string& root, const std::string& name, ImageSequence* sequence,
+                       std::string* error) {
+  const fs::path directory = fs::path(root) / "sequences" / name;
+  if (!IsDirectory(directory)) {
+    *error = PrintablePath(directory.string()) +
+             ": no such directory, expected sequences/NAME of KITTI odometry below the root";
+    return false;
+  }
+  ImageSequence result;
+  result.name = name;
+
+  const auto folder = [&](int camera) { return directory / ("image_" + std::to_string(camera)); };
+  std::array<int, 2> cameras = {0, 1};
+  if (!IsDirectory(folder(0)) || !IsDirectory(folder(1))) cameras = {2, 3};
+  if (!IsDirectory(folder(cameras[0])) || !IsDirectory(folder(cameras[1]))) {
+    *error = PrintablePath(directory.string()) +
+             ": expected image_0 and image_1 in it, or image_2 and image_3";
+    return false;
+  }
+  if (!ReadCalibration((directory / "calib.txt").string(), cameras, &result.cameras, error)) {
+    return false;
+  }
+  int highest = -1;
+  for (const int camera : cameras) {
+    int of_camera;
+    if (!HighestFrame(folder(camera), &of_camera, error)) return false;
+    highest = std::max(highest, of_camera);
+  }
+  if (highest < 0) {
+    *error = PrintablePath(folder(cameras[0]).string()) + ": no images (000000.png, ...) in it";
+    return false;
+  }
+  result.frames.resize(highest + 1);
+  for (int k = 0; k <= highest; ++k) {
+    for (const int camera : cameras) {
+      result.frames[k].images.push_back((folder(camera) / ImageName(k)).string());
+    }
+  }
+
+  const std::string times_path = (directory / "times.txt").string();
+  if (Exists(times_path)) {
+    std::vector<double> times;
+    if (!ReadTimes(times_path, &times, error)) return false;
+    const size_t known = std::min(times.size(), result.frames.size());
+    for (size_t k = 0; k < known; ++k) result.frames[k].time = times[k];
+    result.notes.push_back(TooShort(times_path, times.size(), result.frames.size(), "time"));
+  }
+  const std::string poses_path = (fs::path(root) / "poses" / (name + ".txt")).string();
+  if (Exists(poses_path)) {
+    std::vector<Pose> poses;
+    if (!ReadKittiPoses(poses_path, &poses, error)) return false;
+    const size_t known = std::min(poses.size(), result.frames.size());
+    for (size_t k = 0; k < known; ++k) result.frames[k].world_from_body = poses[k];
+    result.notes.push_back(TooShort(poses_path, poses.size(), result.frames.size(), "truth"));
+  }
+  result.notes.erase(std::remove(result.notes.begin(), result.notes.end(), ""), result.notes.end());
+  *sequence = std::move(result);
+  return true;
+}
+
+}  // namespace rigel

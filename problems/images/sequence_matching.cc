@@ -1,0 +1,325 @@
+#include "rigel/problems/images/sequence_matching.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "rigel/problems/csv.h"
+#include "rigel/problems/images/text_lines.h"
+#include "rigel/problems/match_file.h"
+#include "rigel/problems/parallel.h"
+
+namespace rigel {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kSuffix[] = ".matches";
+constexpr char kSettingsName[] = "rigel_match.settings";
+
+struct FrameIndices {
+  int frame1, frame2;
+
+  std::string FileName() const {
+    char name[64];
+    std::snprintf(name, sizeof(name), "%06d-%06d%s", frame1, frame2, kSuffix);
+    return name;
+  }
+};
+
+bool EndsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+// The features of a frame while pairs need them: extracted by the first that asks, forgotten after
+// the last.
+class FrameFeatures {
+ public:
+  void AddUse() { ++uses_; }
+
+  // Null if an image cannot be used. Each use ends with Release().
+  std::shared_ptr<const std::vector<ImageFeatures>> Get(const FeatureOptions& options,
+                                                        const ImageSequence& sequence, int frame) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (features_ != nullptr || !errors_.empty()) return features_;
+    auto features = std::make_shared<std::vector<ImageFeatures>>(sequence.cameras.size());
+    for (size_t k = 0; k < sequence.cameras.size(); ++k) {
+      std::string error;
+      if (!ExtractFeatures(options, sequence.cameras[k], sequence.frames[frame].images[k],
+                           &(*features)[k], &error)) {
+        errors_.push_back(error);
+      }
+    }
+    if (errors_.empty()) features_ = std::move(features);
+    return features_;
+  }
+
+  void Release() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (--uses_ == 0) features_ = nullptr;
+  }
+
+  const std::vector<std::string>& errors() const { return errors_; }
+
+ private:
+  std::mutex mutex_;
+  int uses_ = 0;
+  std::shared_ptr<const std::vector<ImageFeatures>> features_;
+  std::vector<std::string> errors_;
+};
+
+// All of a pair but its matches and the sizes of the images.
+FramePair MakePair(const ImageSequence& sequence, const FrameIndices& indices) {
+  const ImageFrame& frame1 = sequence.frames[indices.frame1];
+  const ImageFrame& frame2 = sequence.frames[indices.frame2];
+  FramePair pair;
+  pair.sequence = sequence.name;
+  for (const ImageCamera& camera : sequence.cameras) pair.rig.cameras.push_back(camera.camera);
+  if (frame1.time && frame2.time) {
+    pair.time1 = frame1.time;
+    pair.time2 = frame2.time;
+  }
+  if (frame1.world_from_body && frame2.world_from_body) {
+    pair.truth = frame2.world_from_body->Inverse() * *frame1.world_from_body;
+    pair.prior.gravity1 = frame1.world_from_body->R.transpose() * sequence.world_down;
+    pair.prior.gravity2 = frame2.world_from_body->R.transpose() * sequence.world_down;
+  }
+  return pair;
+}
+
+// False with a message if the images of a camera differ in size.
+bool AddMatches(const FeatureOptions& options, const std::vector<ImageFeatures>& features1,
+                const std::vector<ImageFeatures>& features2, FramePair* pair, std::string* error) {
+  for (int k = 0; k < pair->rig.size(); ++k) {
+    if (features1[k].width != features2[k].width || features1[k].height != features2[k].height) {
+      *error = "the images of camera " + std::to_string(k) + " differ in size";
+      return false;
+    }
+    pair->rig.cameras[k].intrinsics.width = features1[k].width;
+    pair->rig.cameras[k].intrinsics.height = features1[k].height;
+  }
+  for (int i = 0; i < pair->rig.size(); ++i) {
+    for (int j = 0; j < pair->rig.size(); ++j) {
+      AppendMatches(options, i, features1[i], j, features2[j], &pair->matches);
+    }
+  }
+  return true;
+}
+
+// What the files of a directory must agree in.
+std::string SettingsText(const SequenceMatchingOptions& options, const ImageSequence& sequence) {
+  return "sequence " + sequence.name + "\nstride " + std::to_string(options.stride) +
+         "\nfeatures " + FeatureTypeName(options.features.type) + "\nmax_features " +
+         std::to_string(options.features.max_features) + "\nratio " +
+         CsvNumber(options.features.ratio) + "\n";
+}
+
+bool WriteSettings(const fs::path& path, const std::string& text, std::string* error) {
+  const fs::path temporary = path.string() + ".tmp";
+  std::ofstream file(temporary, std::ios::binary);
+  file << text;
+  file.close();
+  std::error_code code;
+  if (file) fs::rename(temporary, path, code);
+  if (file && !code) return true;
+  *error = PrintablePath(path.string()) + ": cannot be written";
+  return false;
+}
+
+bool SameSettings(const fs::path& path, const std::string& text, std::string* error) {
+  std::vector<TextLine> lines;
+  if (!ReadTextLines(path.string(), &lines, error)) {
+    *error += "; without it --resume cannot know what the match files beside it were made with";
+    return false;
+  }
+  size_t begin = 0;
+  for (size_t k = 0; begin < text.size(); ++k) {
+    const size_t end = text.find('\n', begin);
+    const std::string now = text.substr(begin, end - begin);
+    if (k >= lines.size() || lines[k].text != now) {
+      *error = PrintablePath(path.string()) + ": the match files beside it were made with " +
+               (k < lines.size() ? Quoted(lines[k].text) : "other settings") + ", this run has " +
+               Quoted(now) + "; name another directory";
+      return false;
+    }
+    begin = end + 1;
+  }
+  return true;
+}
+
+// Makes the directory ready for the run. *kept are the names of its complete files.
+bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequence& sequence,
+                      const std::vector<FrameIndices>& pairs, const std::string& directory,
+                      std::set<std::string>* kept, std::string* error) {
+  std::error_code code;
+  fs::create_directories(directory, code);
+  if (code) {
+    *error = PrintablePath(directory) + ": cannot be made: " + code.message();
+    return false;
+  }
+  std::set<std::string> own, there, others;
+  std::vector<fs::path> temporaries;
+  for (const FrameIndices& indices : pairs) own.insert(indices.FileName());
+  fs::directory_iterator entry(directory, code);
+  for (; !code && entry != fs::directory_iterator(); entry.increment(code)) {
+    const std::string name = entry->path().filename().string();
+    std::error_code ignored;
+    if (entry->is_directory(ignored)) continue;
+    if (EndsWith(name, kSuffix)) {
+      (own.count(name) > 0 ? there : others).insert(name);
+    } else if (own.count(name.substr(0, name.find(".tmp"))) > 0) {
+      temporaries.push_back(entry->path());
+    }
+  }
+  if (code) {
+    *error = PrintablePath(directory) + ": cannot be listed: " + code.message();
+    return false;
+  }
+  const auto holds = [&](const std::set<std::string>& names) {
+    return PrintablePath(directory) + ": holds " + PrintablePath(*names.begin()) +
+           (names.size() > 1 ? " and " + std::to_string(names.size() - 1) + " more" : "");
+  };
+  if (!others.empty()) {
+    *error = holds(others) +
+             ", which would be read as if it were of this run; empty the directory or name another";
+    return false;
+  }
+  if (!there.empty() && !options.resume) {
+    *error = holds(there) + "; --resume continues that run, or name another directory";
+    return false;
+  }
+  const fs::path settings = fs::path(directory) / kSettingsName;
+  const std::string text = SettingsText(options, sequence);
+  if (!there.empty()) {
+    if (!SameSettings(settings, text, error)) return false;
+  } else if (!WriteSettings(settings, text, error)) {
+    return false;
+  }
+  for (const fs::path& temporary : temporaries) fs::remove(temporary, code);
+  for (const std::string& name : there) {
+    FramePair ignored;
+    std::string broken;
+    if (ReadMatchFile((fs::path(directory) / name).string(), &ignored, &broken)) {
+      kept->insert(name);
+    }
+  }
+  return true;
+}
+
+bool ListPairs(const SequenceMatchingOptions& options, const ImageSequence& sequence,
+               std::vector<FrameIndices>* pairs, std::string* error) {
+  const int num_frames = static_cast<int>(sequence.frames.size());
+  const std::string has = "sequence " + PrintablePath(sequence.name) + " has " +
+                          std::to_string(num_frames) + (num_frames == 1 ? " frame" : " frames") +
+                          ", 0 to " + std::to_string(num_frames - 1);
+  const int last = options.last < 0 ? num_frames - 1 : options.last;
+  for (const int frame : {options.first, last}) {
+    if (frame >= num_frames) {
+      *error = "frame " + std::to_string(frame) + " is not there: " + has;
+      return false;
+    }
+  }
+  for (int k = options.first; k <= last - options.stride; k += options.stride) {
+    pairs->push_back({k, k + options.stride});
+  }
+  if (pairs->empty()) *error = "no pair of frames in the range: " + has;
+  return !pairs->empty();
+}
+
+}  // namespace
+
+bool SequenceMatchingOptions::IsValid(std::string* error) const {
+  if (!features.IsValid(error)) return false;
+  if (first < 0) {
+    *error = "first: expected 0 or more";
+    return false;
+  }
+  if (stride < 1) {
+    *error = "stride: expected at least 1";
+    return false;
+  }
+  if (last >= 0 && last - first < stride) {
+    *error = "last: expected at least first + stride";
+    return false;
+  }
+  return true;
+}
+
+bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& sequence,
+                   const std::string& directory, const std::function<void(int)>& begin,
+                   const std::function<void()>& step, SequenceMatchingSummary* summary,
+                   std::string* error) {
+  *summary = SequenceMatchingSummary();
+  if (!options.IsValid(error)) return false;
+  std::vector<FrameIndices> pairs;
+  std::set<std::string> kept;
+  if (!ListPairs(options, sequence, &pairs, error) ||
+      !PrepareDirectory(options, sequence, pairs, directory, &kept, error)) {
+    return false;
+  }
+  summary->num_pairs = static_cast<int>(pairs.size());
+  pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
+                             [&](const FrameIndices& p) { return kept.count(p.FileName()) > 0; }),
+              pairs.end());
+  summary->kept = static_cast<int>(kept.size());
+  const int todo = static_cast<int>(pairs.size());
+  begin(todo);
+
+  std::vector<FrameFeatures> frames(sequence.frames.size());
+  for (const FrameIndices& pair : pairs) {
+    frames[pair.frame1].AddUse();
+    frames[pair.frame2].AddUse();
+  }
+  std::vector<std::string> errors(todo);
+  std::vector<char> written(todo, 0);
+  const auto match = [&](int k) {
+    const FrameIndices& indices = pairs[k];
+    const auto features1 = frames[indices.frame1].Get(options.features, sequence, indices.frame1);
+    const auto features2 = frames[indices.frame2].Get(options.features, sequence, indices.frame2);
+    if (features1 != nullptr && features2 != nullptr) {
+      const std::string path = (fs::path(directory) / indices.FileName()).string();
+      FramePair pair = MakePair(sequence, indices);
+      std::string what;
+      try {
+        if (!AddMatches(options.features, *features1, *features2, &pair, &what)) {
+          errors[k] = PrintablePath(path) + ": not written: " + what;
+        } else {
+          written[k] = WriteMatchFile(path, pair, &errors[k]) ? 1 : 0;
+        }
+      } catch (const std::exception& exception) {
+        errors[k] = PrintablePath(path) + ": not written: " + PrintablePath(exception.what());
+      }
+    }
+    frames[indices.frame1].Release();
+    frames[indices.frame2].Release();
+    step();
+  };
+  // Neighbours are worked on by one thread, which has extracted the frame that they share; with a
+  // thread for each pair the second would wait for it.
+  constexpr int kMaxRun = 8;
+  const int threads = std::max(options.num_threads, 1);
+  const int run = std::clamp((todo + threads - 1) / threads, 1, kMaxRun);
+  ParallelFor((todo + run - 1) / run, threads, [&](int r) {
+    for (int k = r * run; k < std::min((r + 1) * run, todo); ++k) match(k);
+  });
+
+  for (const FrameFeatures& frame : frames) {
+    summary->errors.insert(summary->errors.end(), frame.errors().begin(), frame.errors().end());
+  }
+  for (int k = 0; k < todo; ++k) {
+    summary->written += written[k];
+    if (!errors[k].empty()) summary->errors.push_back(errors[k]);
+  }
+  return true;
+}
+
+}  // namespace rigel

@@ -1,0 +1,219 @@
+// EuRoC's layout: what is read, how images become frames, what breaks it.
+#include "rigel/problems/images/euroc_sequence.h"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "rigel/core/metrics.h"
+#include "rigel/test/problems/images/plane_scene.h"
+
+namespace rigel {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const PlaneScene& Scene() {
+  static const auto* const scene = new PlaneScene();
+  return *scene;
+}
+
+// `text` with the first `from` replaced.
+std::string With(std::string text, const std::string& from, const std::string& to) {
+  const size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+class EurocSequence : public testing::Test {
+ protected:
+  void SetUp() override {
+    root_ = testing::TempDir() + "/rigel_euroc_XXXXXX";
+    ASSERT_NE(mkdtemp(root_.data()), nullptr);
+    for (int k = 0; k < 2; ++k) {
+      const std::string camera = "mav0/cam" + std::to_string(k);
+      Write(camera + "/sensor.yaml", SensorYaml(Scene().cameras()[k]));
+      Write(camera + "/data.csv", "#timestamp [ns],filename\n100,100.png\n200, a.png\n");
+    }
+  }
+  void TearDown() override { fs::remove_all(root_); }
+
+  void Write(const std::string& name, const std::string& text) {
+    WriteFile(root_ + "/" + name, text);
+  }
+  ImageSequence Read(const std::string& below = "") {
+    ImageSequence sequence;
+    std::string error;
+    EXPECT_TRUE(ReadEurocSequence(root_ + below, &sequence, &error)) << error;
+    return sequence;
+  }
+  std::string Error() {
+    ImageSequence sequence;
+    std::string error;
+    EXPECT_FALSE(ReadEurocSequence(root_, &sequence, &error));
+    EXPECT_THAT(error, testing::StartsWith(root_));
+    EXPECT_THAT(error, testing::Not(HasSubstr("\n")));
+    return error;
+  }
+
+  std::string root_;
+};
+
+TEST_F(EurocSequence, CamerasAreAsTheirSensorsSay) {
+  for (const char* below : {"", "/mav0", "/mav0/"}) {
+    const ImageSequence sequence = Read(below);
+    EXPECT_EQ(sequence.name, fs::path(root_).filename().string());
+    EXPECT_THAT(sequence.notes, IsEmpty());
+    EXPECT_EQ(sequence.world_down, Eigen::Vector3d(0, 0, -1));
+    ASSERT_EQ(sequence.cameras.size(), 2u);
+    for (int k = 0; k < 2; ++k) {
+      const ImageCamera& expected = Scene().cameras()[k];
+      const ImageCamera& camera = sequence.cameras[k];
+      EXPECT_NEAR((camera.camera.Q - expected.camera.Q).norm(), 0, 1e-12);
+      EXPECT_EQ(camera.camera.s, expected.camera.s);
+      EXPECT_EQ(camera.camera.intrinsics.fx, expected.camera.intrinsics.fx);
+      EXPECT_EQ(camera.camera.intrinsics.fy, expected.camera.intrinsics.fy);
+      EXPECT_EQ(camera.camera.intrinsics.cx, expected.camera.intrinsics.cx);
+      EXPECT_EQ(camera.camera.intrinsics.cy, expected.camera.intrinsics.cy);
+      EXPECT_EQ(camera.camera.intrinsics.width, 376);
+      EXPECT_EQ(camera.camera.intrinsics.height, 240);
+      ASSERT_TRUE(camera.distortion.has_value());
+      EXPECT_EQ(camera.distortion->k1, expected.distortion->k1);
+      EXPECT_EQ(camera.distortion->k2, expected.distortion->k2);
+      EXPECT_EQ(camera.distortion->p1, expected.distortion->p1);
+      EXPECT_EQ(camera.distortion->p2, expected.distortion->p2);
+    }
+    ASSERT_EQ(sequence.frames.size(), 2u);
+    EXPECT_THAT(sequence.frames[1].images[0], testing::EndsWith("mav0/cam0/data/a.png"));
+    EXPECT_THAT(sequence.frames[1].images[1], testing::EndsWith("mav0/cam1/data/a.png"));
+    EXPECT_DOUBLE_EQ(*sequence.frames[1].time, 200e-9);
+    EXPECT_FALSE(sequence.frames[1].world_from_body.has_value());
+  }
+}
+
+TEST_F(EurocSequence, FramesAreTheTimesThatBothCamerasHave) {
+  Write("mav0/cam0/data.csv", "300,c.png\n100,a.png\n200,b.png\n400,d.png\n");
+  Write("mav0/cam1/data.csv", "100,A.png\n300,C.png\n350,X.png\n");
+  const ImageSequence sequence = Read();
+  ASSERT_EQ(sequence.frames.size(), 2u);
+  EXPECT_THAT(sequence.frames[0].images[0], testing::EndsWith("cam0/data/a.png"));
+  EXPECT_THAT(sequence.frames[1].images[0], testing::EndsWith("cam0/data/c.png"));
+  EXPECT_THAT(sequence.frames[1].images[1], testing::EndsWith("cam1/data/C.png"));
+  EXPECT_THAT(
+      sequence.notes,
+      ElementsAre(HasSubstr("cam0/data.csv: 2 of 4 images are left out: no image of cam1"),
+                  HasSubstr("cam1/data.csv: 1 of 3 images are left out: no image of cam0")));
+  Write("mav0/cam1/data.csv", "101,A.png\n");
+  EXPECT_THAT(Error(), HasSubstr("no image of cam0 has a time stamp of cam1"));
+}
+
+TEST_F(EurocSequence, TruthIsInterpolatedWithinItsGaps) {
+  std::string images;
+  for (const char* time : {"1000000000", "1002500000", "1070000000", "1095000000", "2000000000"}) {
+    images += std::string(time) + ",x.png\n";
+  }
+  for (const char* camera : {"cam0", "cam1"}) {
+    Write(std::string("mav0/") + camera + "/data.csv", images);
+  }
+  Write("mav0/state_groundtruth_estimate0/data.csv",
+        "#timestamp, p, q, v, b\n"
+        "1000000000,1,2,3,1,0,0,0,9,9,9\n"
+        "1010000000,2,2,3,0.980066577841242,0,0,0.198669330795061,9,9,9\n"
+        "1090000000,0,0,0,1,0,0,0,9,9,9\n"
+        "1095000000,5,0,0,-1,0,0,0,9,9,9\n");
+  const ImageSequence sequence = Read();
+  ASSERT_EQ(sequence.frames.size(), 5u);
+  ASSERT_TRUE(sequence.frames[0].world_from_body && sequence.frames[1].world_from_body);
+  EXPECT_EQ(sequence.frames[0].world_from_body->t, Eigen::Vector3d(1, 2, 3));
+  // A quarter of the way; the second pose is turned by 0.4 rad about z.
+  EXPECT_NEAR((sequence.frames[1].world_from_body->t - Eigen::Vector3d(1.25, 2, 3)).norm(), 0,
+              1e-12);
+  EXPECT_NEAR((LogSO3(sequence.frames[1].world_from_body->R) - Eigen::Vector3d(0, 0, 0.1)).norm(),
+              0, 1e-9);
+  EXPECT_FALSE(sequence.frames[2].world_from_body.has_value()) << "80 ms without truth";
+  ASSERT_TRUE(sequence.frames[3].world_from_body.has_value());
+  EXPECT_EQ(sequence.frames[3].world_from_body->t, Eigen::Vector3d(5, 0, 0));
+  EXPECT_FALSE(sequence.frames[4].world_from_body.has_value());
+  EXPECT_THAT(sequence.notes, ElementsAre(HasSubstr("2 of 5 frames lie outside it or in a gap")));
+}
+
+TEST_F(EurocSequence, BrokenSensorsAreTold) {
+  const std::string good = SensorYaml(Scene().cameras()[0]);
+  const std::pair<std::string, const char*> broken[] = {
+      {With(good, "T_BS", "T_SB"), "sensor.yaml: the key T_BS: data is missing"},
+      {With(good, "data:", "date:"), "sensor.yaml: the key T_BS: data is missing"},
+      {With(good, "intrinsics", "intrinsic"), "sensor.yaml: the key intrinsics is missing"},
+      {With(good, "resolution", "size"), "sensor.yaml: the key resolution is missing"},
+      {With(good, "distortion_coefficients", "d"), "the key distortion_coefficients is missing"},
+      {With(good, "distortion_model", "model"), "the key distortion_model is missing"},
+      {With(good, "camera_model", "model"), "the key camera_model is missing"},
+      {With(good, "radial-tangential", "equidistant"),
+       "sensor.yaml:17: distortion_model is 'equidistant', expected radial-tangential"},
+      {With(good, "pinhole", "omni"), "sensor.yaml:15: camera_model is 'omni', expected pinhole"},
+      {With(good, "[229, ", "["), "sensor.yaml:16: intrinsics: expected 4 finite numbers"},
+      {With(good, "[229, ", "[x, "), "sensor.yaml:16: intrinsics: expected 4 finite numbers"},
+      {With(good, "[229, ", "[.nan, "), "sensor.yaml:16: intrinsics: expected 4 finite numbers"},
+      {With(good, "[229, ", "[-229, "), "sensor.yaml:16: intrinsics: expected positive focal"},
+      {With(good, "[376, 240]", "[376, 0.5]"), "sensor.yaml:14: resolution: expected"},
+      {With(good, "[376, 240]", "376"), "sensor.yaml:14: resolution: expected 2 finite numbers"},
+      {With(good, "[376, 240]", "[376, 240"), "sensor.yaml:"},
+      {With(good, "1.0]", "2.0]"), "T_BS: data is not a rigid motion"},
+      {With(good, "0.0, 1.0]", "1.0]"), "T_BS: data: expected 16 finite numbers"},
+      {"", "sensor.yaml: not a list of keys and values"},
+      {"just text", "sensor.yaml: not a list of keys and values"},
+      {"a: b: c", "sensor.yaml:1: "},
+      {std::string("\0\1\2", 3), "sensor.yaml"},
+  };
+  for (const auto& [text, what] : broken) {
+    Write("mav0/cam0/sensor.yaml", text);
+    EXPECT_THAT(Error(), HasSubstr(what)) << text;
+  }
+  fs::remove(root_ + "/mav0/cam0/sensor.yaml");
+  EXPECT_THAT(Error(), HasSubstr("cam0/sensor.yaml: cannot be opened"));
+}
+
+TEST_F(EurocSequence, BrokenListsAreToldWithTheirLines) {
+  const std::pair<std::string, const char*> broken[] = {
+      {"100\n", "cam1/data.csv:1: '100', expected a time stamp in nanoseconds, a comma"},
+      {"#\n100,a.png\nx,b.png\n", "cam1/data.csv:3: 'x,b.png'"},
+      {"1.5,a.png\n", "cam1/data.csv:1: '1.5,a.png'"},
+      {"-1,a.png\n", "cam1/data.csv:1: '-1,a.png'"},
+      {"1,\n", "cam1/data.csv:1: '1,'"},
+      {"100,a.png\n100,b.png\n", "cam1/data.csv:2: the time stamp 100 occurs twice"},
+      {"#timestamp [ns],filename\n", "cam1/data.csv: there is no image in it"},
+  };
+  for (const auto& [text, what] : broken) {
+    Write("mav0/cam1/data.csv", text);
+    EXPECT_THAT(Error(), HasSubstr(what)) << text;
+  }
+  fs::remove(root_ + "/mav0/cam1/data.csv");
+  EXPECT_THAT(Error(), HasSubstr("cam1/data.csv: cannot be opened"));
+}
+
+TEST_F(EurocSequence, BrokenTruthIsToldWithItsLine) {
+  const std::pair<std::string, const char*> broken[] = {
+      {"#\n1,2,3\n", "state_groundtruth_estimate0/data.csv:2: 3 columns, expected at least 8"},
+      {"x,0,0,0,1,0,0,0\n", "data.csv:1: 'x', expected a time stamp"},
+      {"1,0,0,zero,1,0,0,0\n", "data.csv:1: column 4 is 'zero', expected a finite number"},
+      {"1,0,0,0,1,1,0,0\n", "data.csv:1: the quaternion is not of unit length"},
+  };
+  for (const auto& [text, what] : broken) {
+    Write("mav0/state_groundtruth_estimate0/data.csv", text);
+    EXPECT_THAT(Error(), HasSubstr(what)) << text;
+  }
+}
+
+TEST_F(EurocSequence, WrongRootIsTold) {
+  fs::remove_all(root_ + "/mav0/cam1");
+  EXPECT_THAT(Error(), HasSubstr("expected EuRoC's folder mav0 with cam0 and cam1"));
+  fs::remove_all(root_);
+  EXPECT_THAT(Error(), HasSubstr("expected EuRoC's folder mav0 with cam0 and cam1"));
+}
+
+}  // namespace
+}  // namespace rigel

@@ -1,0 +1,201 @@
+// rigel_calibrate_prior: files with a wrong normal and a wrong mounting, and what it leaves of
+// them.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "rigel/core/angles.h"
+#include "rigel/core/pose.h"
+#include "rigel/problems/match_file.h"
+#include "rigel/test/tools/tools_test.h"
+
+namespace rigel {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+const Eigen::Matrix3d kMounting = ExpSO3({DegToRad(1.2), 0, DegToRad(1.6)});  // 2 degrees
+
+double AngleDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return RadToDeg(std::atan2(a.cross(b).norm(), a.dot(b)));
+}
+
+class CalibratePriorTest : public ToolsTest {
+ protected:
+  std::vector<FramePair> Read(const std::string& directory) {
+    std::vector<std::string> errors;
+    std::vector<FramePair> pairs;
+    for (const std::string& path : ListMatchFiles(directory, &errors)) {
+      pairs.emplace_back();
+      std::string error;
+      EXPECT_TRUE(ReadMatchFile(path, &pairs.back(), &error)) << error;
+    }
+    EXPECT_THAT(errors, IsEmpty());
+    return pairs;
+  }
+
+  // A turning drive whose normal and gravity are stated 2 degrees off; with a comment in each file.
+  std::string Misaligned(const std::string& name) {
+    const std::string directory =
+        Simulate(name, {"--pairs=30", "--num_matches=100", "--inter_share=0.5", "--motion=planar",
+                        "--rotation_deg=3"});
+    for (FramePair& pair : Read(directory)) {
+      pair.prior.normal = kMounting * *pair.prior.normal;
+      pair.prior.gravity1 = kMounting.transpose() * *pair.prior.gravity1;
+      pair.prior.gravity2 = kMounting.transpose() * *pair.prior.gravity2;
+      std::string error;
+      EXPECT_TRUE(WriteMatchFile(pair.name, pair, &error)) << error;
+      WriteText(pair.name, "# a comment\n" + ReadText(pair.name));
+    }
+    return directory;
+  }
+};
+
+TEST_F(CalibratePriorTest, FindsTwoDegreesWithinItsSigmaAndWritesThem) {
+  const std::string matches = Misaligned("in");
+  const Outcome run =
+      RunTool("calibrate_prior", {"--matches=" + matches, "--lines=normal,axis,gravity",
+                                  "--output=" + Path("out"), "--json=" + Path("json")});
+  ASSERT_EXIT_CODE(run, 0);
+  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("wrote 30 match files to ")));
+  EXPECT_THAT(run.out, AllOf(HasSubstr("motion plane, from 30 translations and 30 rotations"),
+                             HasSubstr(" deg from the start\n"),
+                             HasSubstr("mounting of the gravity's frame")));
+  EXPECT_LE(Width(run.out), 100u);
+
+  const Json report = ParseReport(ReadText(Path("json")));
+  EXPECT_EQ(report["format"], "rigel-prior-calibration 1");
+  EXPECT_FALSE(report["options"].contains("output"));
+  const Json plane = report["plane"];
+  EXPECT_EQ(plane["level"], "full");
+  EXPECT_NEAR(plane["change_deg"].get<double>(), 2.0, 0.1);
+  const std::vector<double> n = plane["normal"];
+  const double sigma =
+      std::hypot(plane["tilt_sd_deg"].get<double>(), plane["roll_sd_deg"].get<double>());
+  EXPECT_LT(AngleDeg({n[0], n[1], n[2]}, Eigen::Vector3d::UnitY()), 3 * sigma);
+  EXPECT_LT(sigma, 0.2);
+  const Json gravity = report["gravity"];
+  EXPECT_NE(gravity["level"], "none");
+  EXPECT_NEAR(gravity["change_deg"].get<double>(), 2.0, 0.2);
+
+  const std::vector<FramePair> before = Read(matches);
+  const std::vector<FramePair> after = Read(Path("out"));
+  ASSERT_EQ(after.size(), before.size());
+  for (size_t k = 0; k < after.size(); ++k) {
+    EXPECT_THAT(ReadText(after[k].name), HasSubstr("# a comment\n"));
+    const MotionPrior& prior = after[k].prior;
+    EXPECT_LT(AngleDeg(*prior.normal, Eigen::Vector3d::UnitY()), 3 * sigma);
+    EXPECT_EQ(*prior.axis, *prior.normal);
+    EXPECT_FALSE(prior.axis_sigma.has_value());
+    EXPECT_TRUE(prior.normal_sigma.has_value());
+    EXPECT_LT(AngleDeg(*prior.gravity1, Eigen::Vector3d::UnitY()),
+              5 * gravity["tilt_sd_deg"].get<double>());
+    EXPECT_GT(AngleDeg(*before[k].prior.gravity1, Eigen::Vector3d::UnitY()), 1.9);
+    EXPECT_EQ(after[k].matches.size(), before[k].matches.size());
+    EXPECT_EQ(after[k].truth->t, before[k].truth->t);
+    EXPECT_EQ(after[k].noise_px, before[k].noise_px);
+  }
+  // What it is for: raw errors of the planar solver.
+  const auto raw = [&](const std::string& directory) {
+    const Outcome compare =
+        RunTool("compare", {"--matches=" + directory, "--solvers=3pt", "--json=-"});
+    return ParseReport(compare.out)["results"][0]["raw"]["translation_dir_deg"]["median"]
+        .get<double>();
+  };
+  EXPECT_LT(raw(Path("out")), 0.7 * raw(matches));
+}
+
+TEST_F(CalibratePriorTest, InPlaceLeavesWholeFilesAndNothingElse) {
+  const std::string matches = Misaligned("in");
+  const std::string before = ReadText(matches + "/000000.matches");
+  ASSERT_EXIT_CODE(RunTool("calibrate_prior", {"--matches=" + matches, "--in_place"}), 0);
+  size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(matches)) {
+    EXPECT_EQ(entry.path().extension(), ".matches");
+    ++files;
+  }
+  EXPECT_EQ(files, 30u);
+  // But for the normal and its sigma, line by line the same.
+  std::vector<std::string> kept;
+  for (const std::string& line : Lines(ReadText(matches + "/000000.matches"))) {
+    if (line.find("normal") != 0) kept.push_back(line);
+  }
+  std::vector<std::string> expected;
+  for (const std::string& line : Lines(before)) {
+    if (line.find("normal") != 0) expected.push_back(line);
+  }
+  EXPECT_EQ(kept, expected);
+  // Without a request to write nothing is.
+  const std::string now = ReadText(matches + "/000000.matches");
+  EXPECT_EXIT_CODE(RunTool("calibrate_prior", {"--matches=" + matches}), 0);
+  EXPECT_EQ(ReadText(matches + "/000000.matches"), now);
+}
+
+TEST_F(CalibratePriorTest, NothingIsWrittenThatIsNotObservable) {
+  const std::string few = Simulate("few", {"--pairs=5", "--inter_share=0.5"});
+  const Outcome said = RunTool("calibrate_prior", {"--matches=" + few});
+  EXPECT_EXIT_CODE(said, 0);  // an answer
+  EXPECT_THAT(said.out, HasSubstr("not observable: too few motions"));
+  const std::string before = ReadText(few + "/000000.matches");
+  const Outcome run = RunTool("calibrate_prior", {"--matches=" + few, "--in_place", "--json=-"});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("nothing is written")));
+  EXPECT_EQ(ParseReport(run.out)["plane"]["level"], "none");
+  EXPECT_EQ(ReadText(few + "/000000.matches"), before);
+}
+
+TEST_F(CalibratePriorTest, TargetsThatWouldDestroyAreRefused) {
+  const std::string a = Misaligned("a");
+  const Outcome itself = RunTool("calibrate_prior", {"--matches=" + a, "--output=" + a});
+  EXPECT_EXIT_CODE(itself, 1);
+  EXPECT_THAT(Lines(itself.err), ElementsAre(HasSubstr("--output would overwrite it")));
+  const std::string b = Simulate("b", {"--pairs=1", "--num_matches=60"});
+  const Outcome twice =
+      RunTool("calibrate_prior", {"--matches=" + a + "," + b, "--output=" + Path("out")});
+  EXPECT_EXIT_CODE(twice, 1);
+  EXPECT_THAT(Lines(twice.err), ElementsAre(HasSubstr("another file has the same name")));
+  WriteText(Path("file"), "no directory\n");
+  const Outcome file = RunTool("calibrate_prior", {"--matches=" + a, "--output=" + Path("file")});
+  EXPECT_EXIT_CODE(file, 1);
+  EXPECT_THAT(Lines(file.err), ElementsAre(HasSubstr("cannot be made")));
+}
+
+TEST_F(CalibratePriorTest, BrokenFilesAreToldAndTheOthersUsed) {
+  const std::string matches = Misaligned("in");
+  WriteText(matches + "/000003.matches", "format rigmatch 1\nnormal 0 0\n");
+  const Outcome run =
+      RunTool("calibrate_prior", {"--matches=" + matches, "--output=" + Path("out")});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, AllOf(HasSubstr("000003.matches:2: 3 columns, expected 4"),
+                             HasSubstr("wrote 29 match files")));
+  EXPECT_THAT(Read(Path("out")), SizeIs(29));
+}
+
+TEST_F(CalibratePriorTest, WrongFlagsAreUsageErrors) {
+  for (const Args& args : std::vector<Args>{{"--lines="},
+                                            {"--lines=normal,plane"},
+                                            {"--solver=5pt"},
+                                            {"--refine=none"},
+                                            {"--lines=gravity", "--prior=body"},
+                                            {"--in_place", "--output=x"},
+                                            {"--shard=0/2"}}) {
+    const Outcome run =
+        RunTool("calibrate_prior", Args{"--matches=/proc/nonexistent/of/rigel"} + args);
+    EXPECT_EXIT_CODE(run, 2);
+    EXPECT_THAT(run.err, Not(HasSubstr("/nonexistent")));
+  }
+  EXPECT_EXIT_CODE(RunTool("calibrate_prior", {}), 2);
+  const Outcome help = RunTool("calibrate_prior", {"--help"});
+  EXPECT_EXIT_CODE(help, 0);
+  EXPECT_THAT(help.out, AllOf(HasSubstr("--lines=normal"), HasSubstr("--in_place")));
+  EXPECT_LE(Width(help.out), 100u);
+}
+
+}  // namespace
+}  // namespace rigel

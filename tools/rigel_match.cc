@@ -1,0 +1,130 @@
+// rigel_match: match files from the images of a stereo rig.
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gflags/gflags.h>
+#include <opencv2/core/utility.hpp>
+#include <opencv2/core/utils/logger.hpp>
+
+#include "rigel/problems/images/euroc_sequence.h"
+#include "rigel/problems/images/kitti_sequence.h"
+#include "rigel/problems/images/sequence_matching.h"
+#include "rigel/problems/match_file.h"
+#include "rigel/tools/tool.h"
+
+DEFINE_string(kitti_root, "",
+              "KITTI odometry: the directory that holds sequences/ and, for the truth, poses/");
+DEFINE_string(sequence, "", "with --kitti_root: the sequence, a directory of sequences/ as 06");
+DEFINE_string(euroc_root, "",
+              "EuRoC: the directory mav0 of a sequence, or the one that holds mav0");
+DEFINE_string(output, "",
+              "directory that gets the match files 000020-000021.matches, ...; made if missing; "
+              "one with match files is refused, but for --resume");
+DEFINE_int32(first, 0, "the first frame");
+DEFINE_int32(last, -1, "the last frame; by default that of the sequence");
+DEFINE_int32(stride, 1, "match frames that are this many apart");
+DEFINE_string(features, "sift", "sift or orb");
+DEFINE_int32(max_features, 2000, "key points of an image, the strongest");
+DEFINE_double(ratio, 0.8,
+              "Lowe's test: the nearest descriptor is at most this share of the distance of the "
+              "second nearest, seen from both images");
+DEFINE_bool(resume, false,
+            "continue an interrupted run of the same settings: files that are there are kept");
+DEFINE_int32(threads, 1, "pairs worked on at the same time; the files do not depend on it");
+
+namespace rigel {
+namespace {
+
+constexpr char kUsage[] =
+    "rigel_match: match files from the images of a stereo rig.\n"
+    "\n"
+    "  rigel_match --kitti_root=DIR --sequence=06 --first=20 --last=27 --output=DIR\n"
+    "  rigel_match --euroc_root=DIR/V1_01_easy --output=DIR\n"
+    "\n"
+    "Matches of each two consecutive frames, in all four combinations of the left and the right\n"
+    "camera: each other's nearest descriptors that pass the ratio test, outliers and all. Pixels\n"
+    "are undistorted. The files get times, truth and gravity where the data set has a ground\n"
+    "truth. Frames count from 0; those of EuRoC are the time stamps that both cameras have.\n";
+
+int Run() {
+  SequenceMatchingOptions options;
+  std::string error;
+  const std::vector<std::string> given = GivenFlags();
+  const auto is_given = [&](const std::string& flag) {
+    return std::find(given.begin(), given.end(), flag) != given.end();
+  };
+  const bool kitti = !FLAGS_kitti_root.empty();
+  if (kitti && !FLAGS_euroc_root.empty()) {
+    return UsageError("--kitti_root and --euroc_root: expected one of them");
+  }
+  if (!kitti && FLAGS_euroc_root.empty()) {
+    return UsageError("--kitti_root or --euroc_root is missing: name the data set's directory");
+  }
+  if (kitti && FLAGS_sequence.empty()) {
+    return UsageError("--sequence is missing: name a sequence, as 06");
+  }
+  if (FLAGS_sequence.find_first_of("/ \t\n\r") != std::string::npos || FLAGS_sequence == "." ||
+      FLAGS_sequence == "..") {
+    return UsageError("--sequence: expected the name of a directory, without blanks and slashes");
+  }
+  if (!kitti && is_given("sequence")) {
+    return UsageError("--sequence: has no effect with --euroc_root, which is one sequence");
+  }
+  if (FLAGS_output.empty()) return UsageError("--output is missing: name a directory");
+  if (!ParseFeatureType(FLAGS_features, &options.features.type)) {
+    return UsageError("--features=" + FLAGS_features + ": expected sift or orb");
+  }
+  if (is_given("last") && FLAGS_last < 0) return UsageError("--last: expected 0 or more");
+  if (FLAGS_threads < 1 || FLAGS_threads > 1024) return UsageError("--threads: expected 1 to 1024");
+  options.features.max_features = FLAGS_max_features;
+  options.features.ratio = FLAGS_ratio;
+  options.first = FLAGS_first;
+  options.last = FLAGS_last;
+  options.stride = FLAGS_stride;
+  options.num_threads = FLAGS_threads;
+  options.resume = FLAGS_resume;
+  if (!options.IsValid(&error)) return UsageError("--" + error);
+
+  // Pairs run beside each other; threads of OpenCV within one would only be in their way. What
+  // OpenCV logs is said in the program's own words.
+  cv::setNumThreads(1);
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+
+  ImageSequence sequence;
+  if (kitti ? !ReadKittiSequence(FLAGS_kitti_root, FLAGS_sequence, &sequence, &error)
+            : !ReadEurocSequence(FLAGS_euroc_root, &sequence, &error)) {
+    std::cerr << error << "\n";
+    return kExitFailed;
+  }
+  for (const std::string& note : sequence.notes) std::cerr << note << "\n";
+
+  std::unique_ptr<Progress> progress;
+  SequenceMatchingSummary summary;
+  const bool ran = MatchSequence(
+      options, sequence, FLAGS_output,
+      [&](int todo) { progress = std::make_unique<Progress>("rigel_match", todo); },
+      [&] { progress->Step(); }, &summary, &error);
+  progress.reset();
+  if (!ran) {
+    std::cerr << error << "\n";
+    return kExitFailed;
+  }
+  for (const std::string& message : summary.errors) std::cerr << message << "\n";
+  const int failed = summary.num_pairs - summary.written - summary.kept;
+  std::cerr << "wrote " << summary.written << " match files to " << PrintablePath(FLAGS_output);
+  if (summary.kept > 0) std::cerr << ", kept " << summary.kept;
+  if (failed > 0) std::cerr << "; " << failed << " could not be made";
+  std::cerr << "\n";
+  return summary.errors.empty() ? kExitDone : kExitFailed;
+}
+
+}  // namespace
+}  // namespace rigel
+
+int main(int argc, char** argv) {
+  rigel::ParseFlags(rigel::kUsage, &argc, &argv);
+  return rigel::Run();
+}
