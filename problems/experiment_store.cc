@@ -10,12 +10,13 @@
 
 #include "rigel/problems/experiment_report.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/problems/whole_file.h"
 
 namespace rigel {
 namespace {
 
-bool Write(const std::string& path, const char* mode, const std::string& text, std::string* error) {
-  std::FILE* file = std::fopen(path.c_str(), mode);
+bool Append(const std::string& path, const std::string& text, std::string* error) {
+  std::FILE* file = std::fopen(path.c_str(), "ab");
   bool ok = file != nullptr;
   if (ok) ok = std::fwrite(text.data(), 1, text.size(), file) == text.size();
   if (file != nullptr) ok = std::fclose(file) == 0 && ok;
@@ -26,16 +27,6 @@ bool Write(const std::string& path, const char* mode, const std::string& text, s
 }
 
 }  // namespace
-
-bool ReplaceFile(const std::string& path, const std::string& text, std::string* error) {
-  const std::string temporary = path + ".tmp";
-  if (!Write(temporary, "wb", text, error)) return false;
-  std::error_code code;
-  std::filesystem::rename(temporary, path, code);
-  if (!code) return true;
-  *error = PrintablePath(path) + ": cannot be written: " + code.message();
-  return false;
-}
 
 bool ExperimentStore::Open(const std::string& path, const ExperimentPlan& plan, bool resume,
                            std::string* error) {
@@ -48,7 +39,7 @@ bool ExperimentStore::Open(const std::string& path, const ExperimentPlan& plan, 
     *error = PrintablePath(path) + ": cannot be read: " + code.message();
     return false;
   }
-  if (!resume || !there) return ReplaceFile(path, PlanLine(plan), error);
+  if (!resume || !there) return WriteWholeFile(path, PlanLine(plan), error);
   std::ifstream file(path, std::ios::binary);
   std::ostringstream stream;
   stream << file.rdbuf();
@@ -59,9 +50,9 @@ bool ExperimentStore::Open(const std::string& path, const ExperimentPlan& plan, 
   const std::string text = stream.str();
   const size_t end = text.rfind('\n');
   const std::string whole = end == std::string::npos ? "" : text.substr(0, end + 1);
-  if (whole.empty()) return ReplaceFile(path, PlanLine(plan), error);
+  if (whole.empty()) return WriteWholeFile(path, PlanLine(plan), error);
   if (!Read(plan, whole, error)) return false;
-  return whole.size() == text.size() || ReplaceFile(path, whole, error);
+  return whole.size() == text.size() || WriteWholeFile(path, whole, error);
 }
 
 bool ExperimentStore::Read(const ExperimentPlan& plan, const std::string& text,
@@ -108,7 +99,7 @@ bool ExperimentStore::Has(const ExperimentPoint& point) const {
 
 bool ExperimentStore::Add(const ExperimentPoint& point, const std::vector<ExperimentRow>& rows,
                           std::string* error) {
-  if (!Write(path_, "ab", PointLine(point, rows), error)) return false;
+  if (!Append(path_, PointLine(point, rows), error)) return false;
   points_.push_back(point);
   rows_.insert(rows_.end(), rows.begin(), rows.end());
   return true;

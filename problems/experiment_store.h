@@ -36,10 +36,6 @@ class ExperimentStore {
   std::vector<ExperimentRow> rows_;
 };
 
-// Writes a file in one step: after an interruption it is the old or the new one. False with a
-// message that names the file.
-bool ReplaceFile(const std::string& path, const std::string& text, std::string* error);
-
 }  // namespace rigel
 
 #endif  // RIGEL_PROBLEMS_EXPERIMENT_STORE_H_

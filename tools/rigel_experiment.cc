@@ -15,6 +15,7 @@
 #include "rigel/problems/experiment_report.h"
 #include "rigel/problems/experiment_store.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/problems/whole_file.h"
 #include "rigel/tools/plot_script.h"
 #include "rigel/tools/tool.h"
 
@@ -174,7 +175,7 @@ bool WriteResults(const std::vector<ExperimentPlan>& plans,
         {name + ".txt", table}};
     for (const auto& [file, text] : files) {
       std::string error;
-      if (!ReplaceFile(OutputPath(file), text, &error)) ok = Failed(error);
+      if (!WriteWholeFile(OutputPath(file), text, &error)) ok = Failed(error);
     }
     results[name] = rows;
   }
@@ -184,8 +185,8 @@ bool WriteResults(const std::vector<ExperimentPlan>& plans,
                claims.end());
   PrintClaims(claims);
   std::string error;
-  if (!ReplaceFile(OutputPath("claims.md"), ClaimsMarkdown(AboutRun(plans), claims), &error) ||
-      !ReplaceFile(OutputPath("claims.json"), ClaimsJson(claims), &error)) {
+  if (!WriteWholeFile(OutputPath("claims.md"), ClaimsMarkdown(AboutRun(plans), claims), &error) ||
+      !WriteWholeFile(OutputPath("claims.json"), ClaimsJson(claims), &error)) {
     ok = Failed(error);
   }
   return FlushStdout() && ok;
