@@ -12,7 +12,8 @@ bool RansacOptions::IsValid(std::string* error) const {
     *error = "threshold_px must lie in 1e-6 to 1e6";
     return false;
   }
-  if (score != ScoreKind::kMsac && score != ScoreKind::kMagsac) {
+  if (score != ScoreKind::kMsac && score != ScoreKind::kMagsac &&
+      score != ScoreKind::kInlierCount) {
     *error = "score is no ScoreKind";
     return false;
   }

@@ -1,10 +1,10 @@
 // RANSAC over a solver concept: it knows how to draw, solve and score, and nothing of geometry.
 //
-// MSAC or MAGSAC++ score, samples as the solver draws them (PROSAC: prosac.h), the number of
-// iterations adapts to the share of inliers, scoring stops early once a hypothesis can no longer
-// win, the best hypothesis of the first min_iterations and each better one after them is locally
-// optimized, and in the end the best ones of a looser score (finalists). Deterministic: the seed
-// fixes the result.
+// MSAC, MAGSAC++ or inlier-count score, samples as the solver draws them (PROSAC: prosac.h), the
+// number of iterations adapts to the share of inliers, scoring stops early once a hypothesis can no
+// longer win, the best hypothesis of the first min_iterations and each better one after them is
+// locally optimized, and in the end the best ones of a looser score (finalists). Deterministic: the
+// seed fixes the result.
 #ifndef RIGEL_MINIMAL_RANSAC_H_
 #define RIGEL_MINIMAL_RANSAC_H_
 
@@ -26,6 +26,9 @@ inline constexpr int kMaxRedraws = 10;
 enum class ScoreKind {
   kMsac,    // sum min(r^2, threshold^2), Torr and Zisserman 2000
   kMagsac,  // MAGSAC++, Barath et al. 2020: the noise level marginalized up to the threshold
+  // Number of matches that are no inliers, as of Fischler and Bolles 1981: of hypotheses with as
+  // many inliers the first wins. For comparisons with published figures; it never stops early.
+  kInlierCount,
 };
 
 struct RansacOptions {
@@ -174,6 +177,12 @@ RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOp
   const auto bound = [&](double score) {
     return options.early_termination ? score : std::numeric_limits<double>::infinity();
   };
+  const bool count = options.score == ScoreKind::kInlierCount;
+  const auto full_score = [&](const Model& model, double limit, int* inliers) -> double {
+    if (!count) return solver.Score(model, limit, inliers);
+    solver.Score(model, std::numeric_limits<double>::infinity(), inliers);
+    return solver.num_data() - *inliers;
+  };
   const auto keep_best = [&](const Model& model, double score, int inliers) {
     if (!(score < result.score)) return;
     result.best = model;
@@ -190,7 +199,7 @@ RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOp
     Model model = result.best_minimal;
     if (!solver.LocalOptimize(&model)) return;
     int inliers = 0;
-    const double score = solver.Score(model, result.score, &inliers);
+    const double score = full_score(model, result.score, &inliers);
     keep_best(model, score, inliers);
   };
 
@@ -205,13 +214,14 @@ RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOp
         const double loose = solver.LooseScore(model, bound(finalists.Worst(capacity)));
         if (loose < finalists.Worst(capacity)) finalists.Add(solver, model, loose, capacity);
       }
-      // Also false for NaN. The quick score never rejects a winner.
-      if (!(solver.QuickScore(model, bound(result.minimal_score)) < result.minimal_score)) {
+      // Also false for NaN. The quick score never rejects a winner; of a count there is none.
+      if (!count &&
+          !(solver.QuickScore(model, bound(result.minimal_score)) < result.minimal_score)) {
         continue;
       }
       if (!solver.Admit(&model)) continue;
       int inliers = 0;
-      const double score = solver.Score(model, bound(result.minimal_score), &inliers);
+      const double score = full_score(model, bound(result.minimal_score), &inliers);
       if (!(score < result.minimal_score)) continue;
       result.found = true;
       result.best_minimal = model;
@@ -233,7 +243,7 @@ RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOp
     if ((k >= 0 && solver.Similar(model, best)) || !solver.OptimizeLoosely(&model)) continue;
     int inliers = 0;
     const double before = result.score;
-    const double score = solver.Score(model, result.score, &inliers);
+    const double score = full_score(model, result.score, &inliers);
     keep_best(model, score, inliers);
     // Where the best two finalists end no better, the others would not either.
     if (k >= 0 && !(result.score < before) && ++num_worse == kMaxWorse) break;

@@ -5,6 +5,7 @@
 #include "rigel/problems/csv.h"
 #include "rigel/problems/report.h"
 #include "rigel/problems/sequence_tables.h"
+#include "rigel/problems/summary_json.h"
 #include "rigel/problems/table.h"
 
 namespace rigel {
@@ -20,48 +21,6 @@ std::optional<double> Ratio(const std::optional<Statistics>& error,
                             const std::optional<Statistics>& bound) {
   if (!error || !bound || !(bound->rms > 0)) return std::nullopt;
   return error->rms / bound->rms;
-}
-
-void Put(const char* key, const std::optional<Statistics>& s, Json* object) {
-  if (!s) return;
-  (*object)[key] = {{"median", s->median}, {"mean", s->mean}, {"rms", s->rms}, {"p90", s->p90}};
-}
-
-void PutGroup(const char* key, const Json& group, Json* object) {
-  if (!group.empty()) (*object)[key] = group;
-}
-
-Json SummaryJson(const SolverSummary& s) {
-  Json entry;
-  entry["solver"] = s.solver;
-  entry["sequence"] = s.sequence;
-  entry["pairs"] = s.pairs;
-  entry["failures"] = s.failures;
-  entry["direction_pairs"] = s.direction_pairs;
-  Json raw, refined, bound, time;
-  Put("rotation_deg", s.raw_rotation_deg, &raw);
-  Put("translation_dir_deg", s.raw_direction_deg, &raw);
-  Put("scale", s.raw_scale, &raw);
-  PutGroup("raw", raw, &entry);
-  Put("rotation_deg", s.refined_rotation_deg, &refined);
-  Put("translation_dir_deg", s.refined_direction_deg, &refined);
-  Put("scale", s.refined_scale, &refined);
-  PutGroup("refined", refined, &entry);
-  Put("rotation_deg", s.bound_rotation_deg, &bound);
-  Put("translation_dir_deg", s.bound_direction_deg, &bound);
-  PutGroup("bound", bound, &entry);
-  if (s.nees_ratio) {
-    entry["nees"] = {{"ratio", *s.nees_ratio},
-                     {"degrees_of_freedom", s.nees_dof},
-                     {"low", s.nees_low},
-                     {"high", s.nees_high}};
-  }
-  Put("inlier_ratio", s.inlier_ratio, &entry);
-  Put("iterations", s.iterations, &entry);
-  Put("ransac", s.ransac_ms, &time);
-  Put("refine", s.refine_ms, &time);
-  PutGroup("time_ms", time, &entry);
-  return entry;
 }
 
 Json ErrorsJson(const MotionErrors& errors) {

@@ -1,5 +1,5 @@
-// Accuracy regression: median errors of raw and refined motions in a few settings of the scene,
-// against expected.json beside this file.
+// Accuracy regression: median errors of raw and refined motions in a few settings of the scene and
+// at one point of each experiment, against expected.json beside this file.
 //
 //   accuracy_test                 compares; names each deviation
 //   accuracy_test --update        rewrites expected.json (test/accuracy/update.sh builds first)
@@ -9,6 +9,7 @@
 // processor rounds differently; then RANSAC may keep another of two hypotheses that score alike in
 // a pair or two, and a median of 60 pairs moves a little. The tolerances of expected.json leave
 // room for that and not for more; they are edited by hand, --update keeps them.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -22,6 +23,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/comparison.h"
+#include "rigel/problems/experiment.h"
 #include "rigel/problems/synthetic.h"
 
 namespace rigel {
@@ -93,6 +95,21 @@ double Rounded(double value) {
 
 // Quantity to median, "raw_rotation_deg" and so on, and "failures"; without those that are not
 // observable.
+Json Medians(const SolverSummary& summary) {
+  Json medians;
+  medians["failures"] = summary.failures;
+  const auto put = [&](const char* name, const std::optional<Statistics>& s) {
+    if (s) medians[name] = Rounded(s->median);
+  };
+  put("raw_rotation_deg", summary.raw_rotation_deg);
+  put("raw_direction_deg", summary.raw_direction_deg);
+  put("raw_scale", summary.raw_scale);
+  put("refined_rotation_deg", summary.refined_rotation_deg);
+  put("refined_direction_deg", summary.refined_direction_deg);
+  put("refined_scale", summary.refined_scale);
+  return medians;
+}
+
 Json Measure(const Setting& setting) {
   SceneOptions scene;
   scene.num_matches = 150;
@@ -115,18 +132,40 @@ Json Measure(const Setting& setting) {
   options.refine.form = setting.refine;
   const SolverSummary summary =
       Summarize(setting.solver, "all", RunSolver(pairs, options, kThreads, {}));
-  Json medians;
-  medians["failures"] = summary.failures;
-  const auto put = [&](const char* name, const std::optional<Statistics>& s) {
-    if (s) medians[name] = Rounded(s->median);
-  };
-  put("raw_rotation_deg", summary.raw_rotation_deg);
-  put("raw_direction_deg", summary.raw_direction_deg);
-  put("raw_scale", summary.raw_scale);
-  put("refined_rotation_deg", summary.refined_rotation_deg);
-  put("refined_direction_deg", summary.refined_direction_deg);
-  put("refined_scale", summary.refined_scale);
-  return medians;
+  return Medians(summary);
+}
+
+// The experiments, thinned: the largest value of the grid, random motion. 6pt-stewenius would take
+// nine tenths of the time; the motions of drives need files of their own.
+std::vector<std::string> ExperimentNamesHere() {
+  std::vector<std::string> names;
+  for (const ExperimentSpec& spec : ExperimentCatalogue()) {
+    if (spec.variable != ExperimentVariable::kNone) names.push_back(spec.name);
+  }
+  return names;
+}
+
+// Entry, "experiment-outliers-80-4pt_liu-paper" and so on, to its medians.
+Json MeasureExperiment(const std::string& name) {
+  ExperimentSpec spec = *FindExperiment(name);
+  spec.solvers.erase(std::remove(spec.solvers.begin(), spec.solvers.end(), "6pt-stewenius"),
+                     spec.solvers.end());
+  ExperimentOptions options;
+  options.pairs = kPairs;
+  options.num_threads = kThreads;
+  ExperimentPlan plan;
+  std::string error;
+  EXPECT_TRUE(PlanExperiment(spec, options, &plan, &error)) << error;
+  const double last = spec.values.back();
+  std::vector<ExperimentRow> rows;
+  EXPECT_TRUE(RunExperimentPoint(plan, {"random", "", last}, {}, {}, &rows, &error)) << error;
+  Json entries;
+  for (const ExperimentRow& row : rows) {
+    std::ostringstream entry;
+    entry << "experiment-" << name << "-" << last << "-" << row.summary.solver << "-" << row.loop;
+    entries[entry.str()] = Medians(row.summary);
+  }
+  return entries;
 }
 
 Json ReadExpected() {
@@ -158,12 +197,10 @@ std::string TestName(const Setting& setting) {
 INSTANTIATE_TEST_SUITE_P(Scene, Accuracy, testing::ValuesIn(kSettings),
                          [](const auto& setting) { return TestName(setting.param); });
 
-TEST_P(Accuracy, MediansAreAsExpected) {
-  const std::string name = GetParam().name;
+void ExpectAsExpected(const std::string& name, const Json& measured) {
   const Json file = ReadExpected();
   const Json tolerances = file.value("tolerances", Json::object());
   const Json expected = file.value("medians", Json::object()).value(name, Json::object());
-  const Json measured = Measure(GetParam());
   Json quantities = measured;  // of both
   quantities.update(expected);
   for (const auto& [quantity, ignored] : quantities.items()) {
@@ -178,18 +215,44 @@ TEST_P(Accuracy, MediansAreAsExpected) {
   }
 }
 
+TEST_P(Accuracy, MediansAreAsExpected) { ExpectAsExpected(GetParam().name, Measure(GetParam())); }
+
+class ExperimentAccuracy : public testing::TestWithParam<std::string> {};
+
+INSTANTIATE_TEST_SUITE_P(Experiments, ExperimentAccuracy, testing::ValuesIn(ExperimentNamesHere()),
+                         [](const auto& name) {
+                           std::string text = name.param;
+                           std::replace(text.begin(), text.end(), '-', '_');
+                           return text;
+                         });
+
+TEST_P(ExperimentAccuracy, MediansAreAsExpected) {
+  const Json measured = MeasureExperiment(GetParam());
+  for (const auto& [name, medians] : measured.items()) ExpectAsExpected(name, medians);
+}
+
 TEST(AccuracyData, HasTheSettingsOfTheTestAndNoOthers) {
   const Json file = ReadExpected();
   std::map<std::string, int> names;
   for (const Setting& setting : kSettings) EXPECT_EQ(++names[setting.name], 1) << setting.name;
   const Json all = file.value("medians", Json::object());
   const Json tolerances = file.value("tolerances", Json::object());
+  int num_of_experiments = 0;
   for (const auto& [name, medians] : all.items()) {
-    EXPECT_EQ(names.count(name), 1u) << name << " is in the file only";
+    const bool of_experiment = name.rfind("experiment-", 0) == 0;
+    num_of_experiments += of_experiment;
+    EXPECT_EQ(names.count(name), of_experiment ? 0u : 1u) << name << " is in the file only";
     for (const auto& [quantity, value] : medians.items()) {
       EXPECT_TRUE(tolerances.contains(quantity)) << quantity << " has no tolerance";
     }
   }
+  int wanted = 0;  // both loops
+  for (const std::string& name : ExperimentNamesHere()) {
+    const std::vector<std::string>& solvers = FindExperiment(name)->solvers;
+    wanted += 2 * static_cast<int>(solvers.size());
+    wanted -= 2 * static_cast<int>(std::count(solvers.begin(), solvers.end(), "6pt-stewenius"));
+  }
+  EXPECT_EQ(num_of_experiments, wanted) << "the file has too few or too many experiments";
 }
 
 // One line a stage of a setting, so that a diff shows what moved.
@@ -232,12 +295,13 @@ int Update() {
     return 1;
   }
   const Json before = file.value("medians", Json::object());
-  file["medians"] = Json::object();
+  Json all = Json::object();
+  for (const Setting& setting : kSettings) all[setting.name] = Measure(setting);
+  for (const std::string& name : ExperimentNamesHere()) all.update(MeasureExperiment(name));
+  file["medians"] = all;
   int changed = 0;
-  for (const Setting& setting : kSettings) {
-    const Json medians = Measure(setting);
-    file["medians"][setting.name] = medians;
-    const Json old = before.value(setting.name, Json::object());
+  for (const auto& [name, medians] : all.items()) {
+    const Json old = before.value(name, Json::object());
     Json quantities = medians;
     quantities.update(old);
     for (const auto& [quantity, ignored] : quantities.items()) {
@@ -245,8 +309,7 @@ int Update() {
       const Json is = medians.value(quantity, Json());
       if (was == is) continue;
       ++changed;
-      std::cout << setting.name << "/" << quantity << ": " << Text(was) << " -> " << Text(is)
-                << "\n";
+      std::cout << name << "/" << quantity << ": " << Text(was) << " -> " << Text(is) << "\n";
     }
   }
   std::ofstream stream(RIGEL_ACCURACY_DATA, std::ios::binary);

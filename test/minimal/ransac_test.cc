@@ -244,6 +244,36 @@ TEST(Ransac, BestMinimalIsTheBestHypothesisBeforeLocalOptimization) {
   EXPECT_FALSE(with.best == with.best_minimal);
 }
 
+TEST(Ransac, InlierCountKeepsTheFirstHypothesisWithTheMostInliers) {
+  for (uint64_t seed = 1; seed <= 10; ++seed) {
+    const LineSolver solver(60, 60, 0.5, seed);
+    RansacOptions options;
+    options.score = ScoreKind::kInlierCount;
+    options.local_optimization = false;
+    options.min_iterations = options.max_iterations = 200;
+    const RansacResult<Line> result = Fit(solver, options);
+    Random random(options.seed);
+    int most = -1;
+    Line best;
+    std::vector<Line> lines;
+    for (int k = 0; k < 200; ++k) {
+      int sample[2];
+      solver.Draw(&random, sample);
+      solver.MinimalSolver(sample, &lines);
+      for (const Line& line : lines) {
+        int inliers = 0;
+        solver.Score(line, kInf, &inliers);
+        if (inliers <= most) continue;
+        most = inliers;
+        best = line;
+      }
+    }
+    EXPECT_TRUE(result.best_minimal == best) << seed;
+    EXPECT_EQ(result.num_inliers, most) << seed;
+    EXPECT_EQ(result.score, 120 - most) << seed;
+  }
+}
+
 TEST(Ransac, OptimizesOnlyHypothesesThatLead) {
   const LineSolver solver(60, 60);
   const RansacResult<Line> result = Fit(solver);

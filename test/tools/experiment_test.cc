@@ -1,0 +1,313 @@
+// rigel_experiment and rigel_plot.py: results, resumed runs, figures and what fails a run.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include "rigel/test/tools/tools_test.h"
+
+namespace rigel {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+namespace fs = std::filesystem;
+
+// Beside its results each run gives figures, where matplotlib is.
+const Args kSmall = {"--name=outliers", "--quick", "--pairs=2", "--no_times"};
+const char* const kFiles[] = {"outliers.json", "outliers.csv", "outliers.txt",
+                              "claims.md",     "claims.json",  "outliers.points.jsonl"};
+
+class ExperimentTest : public ToolsTest {
+ protected:
+  Outcome Experiment(const Args& args) { return RunTool("experiment", args + Args{"--nofigures"}); }
+
+  // A matplotlib that cannot be imported hides the real one.
+  void HideMatplotlib() {
+    fs::create_directories(Path("hide/matplotlib"));
+    WriteText(Path("hide/matplotlib/__init__.py"), "raise ImportError('hidden')\n");
+    setenv("PYTHONPATH", Path("hide").c_str(), 1);
+  }
+  void TearDown() override {
+    unsetenv("PYTHONPATH");
+    ToolsTest::TearDown();
+  }
+};
+
+TEST_F(ExperimentTest, ListsAndRefusesNames) {
+  const Outcome list = RunTool("experiment", {"--list"});
+  EXPECT_EXIT_CODE(list, 0);
+  for (const char* name :
+       {"image-noise", "pitch-noise", "roll-noise", "planar-image-noise", "planar-vibration",
+        "rotation-angle", "outliers", "match-count", "inter-share", "kitti-motions"}) {
+    EXPECT_THAT(list.out, HasSubstr(name));
+  }
+  EXPECT_LE(Width(list.out), 100u);
+
+  const std::string out = "--output=" + Path("none");
+  const std::vector<std::pair<Args, const char*>> wrong = {
+      {{out}, "--name is missing"},
+      {{"--name=all"}, "--output is missing"},
+      {{"--name=nonsense", out}, "'nonsense'; expected all or some of image-noise, pitch-noise"},
+      {{"--name=outliers,outliers", out}, "named twice"},
+      {{"--name=kitti-motions", out}, "needs --poses"},
+      {{"--name=outliers", out, "--pairs=-1"}, "--pairs"},
+      {{"--name=outliers", out, "--threads=-1"}, "--threads"},
+      {{"--name=outliers", out, "--resume", "--overwrite"}, "contradict"},
+      {{"--name=kitti-motions", out, "--poses=a", "--kitti_root=b"}, "give one of them"}};
+  for (const auto& [args, message] : wrong) {
+    const Outcome run = RunTool("experiment", args);
+    EXPECT_EXIT_CODE(run, 2);
+    EXPECT_THAT(run.err, HasSubstr(message));
+  }
+  EXPECT_FALSE(fs::exists(Path("none")));
+}
+
+TEST_F(ExperimentTest, WritesItsResults) {
+  const Outcome run = Experiment(kSmall + Args{"--output=" + Path("a")});
+  ASSERT_EXIT_CODE(run, 0);
+  EXPECT_LE(Width(run.out), 100u) << run.out;
+  EXPECT_THAT(run.out, AllOf(HasSubstr("outliers: "), HasSubstr("4pt-axis"), HasSubstr("bound")));
+  const Json report = ParseReport(ReadText(Path("a/outliers.json")));
+  EXPECT_EQ(report["format"], "rigel-experiment 1");
+  EXPECT_EQ(report["experiment"], "outliers");
+  EXPECT_EQ(report["options"]["pairs"], 2);
+  EXPECT_EQ(report["x"]["name"], "outlier_percent");
+  // 5 points, 6 solvers, 2 loops.
+  EXPECT_EQ(report["results"].size(), 60u);
+  for (const Json& row : report["results"]) {
+    EXPECT_EQ(row["pairs"], 2);
+    EXPECT_TRUE(row["loop"] == "paper" || row["loop"] == "rigel");
+    EXPECT_FALSE(row.contains("time_ms"));
+    if (row["failures"] == 0) {
+      for (const char* stage : {"raw", "refined"}) {
+        EXPECT_THAT(Keys(row[stage]["rotation_deg"]),
+                    testing::UnorderedElementsAre("median", "mean", "rms", "p90"));
+      }
+    }
+  }
+  const std::vector<std::string> csv = Lines(ReadText(Path("a/outliers.csv")));
+  EXPECT_EQ(csv.size(), 61u);
+  const auto commas = std::count(csv[0].begin(), csv[0].end(), ',');
+  for (const std::string& line : csv) {
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), commas) << line;
+  }
+}
+
+TEST_F(ExperimentTest, AnyNumberOfThreadsAndAnInterruptionChangeNoByte) {
+  const Args args = kSmall + Args{"--output=" + Path("whole"), "--threads=1"};
+  ASSERT_EXIT_CODE(Experiment(args), 0);
+  const std::string points = ReadText(Path("whole/outliers.points.jsonl"));
+  const size_t third = points.find('\n', points.find('\n', points.find('\n') + 1) + 1);
+  // Ended within the third point; after all of them, before the report; before any.
+  for (const size_t size : {third + 100, points.size(), size_t{0}}) {
+    const std::string directory = Path("part" + std::to_string(size));
+    fs::create_directories(directory);
+    WriteText(directory + "/outliers.points.jsonl", points.substr(0, size));
+    const Outcome run =
+        Experiment(kSmall + Args{"--output=" + directory, "--threads=3", "--resume"});
+    ASSERT_EXIT_CODE(run, 0);
+    for (const char* file : kFiles) {
+      EXPECT_EQ(ReadText(directory + "/" + file), ReadText(Path("whole/") + file)) << file;
+    }
+  }
+}
+
+TEST_F(ExperimentTest, KeepsWhatIsThere) {
+  const Args args = kSmall + Args{"--output=" + Path("a")};
+  ASSERT_EXIT_CODE(Experiment(args), 0);
+  const std::string points = ReadText(Path("a/outliers.points.jsonl"));
+
+  Outcome run = Experiment(args);
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, AllOf(HasSubstr(Path("a/outliers.points.jsonl")), HasSubstr("--resume")));
+  run = Experiment(args + Args{"--resume", "--seed=2"});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, HasSubstr("of another run"));
+  EXPECT_EQ(ReadText(Path("a/outliers.points.jsonl")), points);
+
+  std::string broken = points;
+  broken[broken.find("\"rows\"") + 2] = '!';
+  WriteText(Path("a/outliers.points.jsonl"), broken);
+  run = Experiment(args + Args{"--resume"});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, HasSubstr(Path("a/outliers.points.jsonl") + ":2: no finished point"));
+
+  EXPECT_EXIT_CODE(Experiment(args + Args{"--overwrite"}), 0);
+  EXPECT_EQ(ReadText(Path("a/outliers.points.jsonl")), points);
+}
+
+TEST_F(ExperimentTest, SaysWhatCannotBeWrittenOrRead) {
+  WriteText(Path("file"), "");
+  Outcome run = Experiment(kSmall + Args{"--output=" + Path("file/below")});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, HasSubstr(Path("file/below")));
+
+  fs::create_directories(Path("b/outliers.points.jsonl"));
+  run = Experiment(kSmall + Args{"--output=" + Path("b"), "--resume"});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, HasSubstr("outliers.points.jsonl"));
+
+  run = Experiment({"--name=kitti-motions", "--quick", "--output=" + Path("c"),
+                    "--kitti_root=" + Path("missing")});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, HasSubstr(Path("missing/poses")));
+}
+
+// Ten frames straight ahead, 1 m each.
+void WritePoses(const std::string& path) {
+  std::string text;
+  for (int k = 0; k < 10; ++k) text += "1 0 0 0 0 1 0 0 0 0 1 " + std::to_string(k) + "\n";
+  WriteText(path, text);
+}
+
+TEST_F(ExperimentTest, KittiMotionsHasARowADrive) {
+  fs::create_directories(Path("kitti/poses"));
+  WritePoses(Path("kitti/poses/03.txt"));
+  WritePoses(Path("kitti/poses/04.txt"));
+  const Outcome run = Experiment({"--name=kitti-motions", "--quick", "--every=4",
+                                  "--output=" + Path("a"), "--kitti_root=" + Path("kitti")});
+  ASSERT_EXIT_CODE(run, 0);
+  EXPECT_LE(Width(run.out), 100u) << run.out;
+  const Json report = ParseReport(ReadText(Path("a/kitti-motions.json")));
+  EXPECT_FALSE(report.contains("x"));
+  std::set<std::string> drives;
+  for (const Json& row : report["results"]) {
+    drives.insert(row["sequence"].get<std::string>());
+    EXPECT_EQ(row["pairs"], 3) << "motions 0, 4 and 8 of nine";
+    EXPECT_FALSE(row.contains("x"));
+    EXPECT_TRUE(row.contains("bound"));
+    EXPECT_TRUE(row.contains("time_ms"));
+  }
+  EXPECT_THAT(drives, testing::ElementsAre("03", "04"));
+  EXPECT_THAT(ReadText(Path("a/claims.md")), HasSubstr("4pt-axis-approx is the fastest"));
+  EXPECT_THAT(ReadText(Path("a/claims.md")), Not(HasSubstr("not measured")));
+}
+
+TEST_F(ExperimentTest, WithoutMatplotlibTheResultsStay) {
+  HideMatplotlib();
+  const Outcome run = RunTool("experiment", kSmall + Args{"--output=" + Path("a")});
+  EXPECT_EXIT_CODE(run, 0);
+  EXPECT_THAT(run.err, AllOf(HasSubstr("matplotlib"), HasSubstr("rigel_plot.py")));
+  EXPECT_TRUE(fs::exists(Path("a/outliers.json")));
+  const Outcome page =
+      RunTool("experiment", kSmall + Args{"--output=" + Path("c"), "--html=" + Path("page.html")});
+  EXPECT_EXIT_CODE(page, 1);
+  EXPECT_TRUE(fs::exists(Path("c/outliers.json")));
+}
+
+class PlotTest : public ExperimentTest {
+ protected:
+  // True, with a message, if there is no matplotlib to draw with.
+  bool Skip() {
+    WritePoses(Path("probe.txt"));
+    const Outcome run =
+        RunTool("plot.py", {"--estimate=" + Path("probe.txt"), "--output=" + Path("probe")});
+    return run.exit_code == 3;
+  }
+
+  // Both files are there and are what they say.
+  void ExpectFigure(const std::string& path) {
+    EXPECT_EQ(ReadText(path + ".png").substr(1, 3), "PNG") << path;
+    EXPECT_THAT(ReadText(path + ".svg"), HasSubstr("<svg")) << path;
+  }
+};
+
+#define SKIP_WITHOUT_MATPLOTLIB() \
+  if (Skip()) GTEST_SKIP() << "python3 has no matplotlib: figures are not tested"
+
+TEST_F(PlotTest, DrawsAnExperimentAndOnePageWithAllOfIt) {
+  SKIP_WITHOUT_MATPLOTLIB();
+  const std::string page = Path("page.html");
+  const Outcome run = RunTool("experiment", {"--name=outliers,image-noise", "--quick", "--pairs=1",
+                                             "--output=" + Path("a"), "--html=" + page});
+  ASSERT_EXIT_CODE(run, 0);
+  for (const char* name :
+       {"outliers", "outliers-rigel", "image-noise", "image-noise-rigel", "image-noise-runtime"}) {
+    ExpectFigure(Path("a/figures/") + name);
+  }
+  const std::string svg = ReadText(Path("a/figures/image-noise.svg"));
+  for (const char* text : {"forward motion", "random motion", "sideways motion", "refined", "raw",
+                           "rotation error [deg]", "translation direction error [deg]",
+                           "4pt-axis-approx", "17pt-li", "bound"}) {
+    EXPECT_THAT(svg, HasSubstr(text));
+  }
+  const std::string html = ReadText(page);
+  EXPECT_THAT(html, AllOf(HasSubstr("data:image/svg+xml;base64,"), HasSubstr("Claims"),
+                          HasSubstr("outliers: "), HasSubstr("confirmed")));
+  for (const char* outside : {"http:", "https:", "file:", "src=\"/", "<link", "<script"}) {
+    EXPECT_THAT(html, Not(HasSubstr(outside)));
+  }
+}
+
+TEST_F(PlotTest, TheSameResultsGiveTheSameFigures) {
+  SKIP_WITHOUT_MATPLOTLIB();
+  ASSERT_EXIT_CODE(Experiment(kSmall + Args{"--output=" + Path("a")}), 0);
+  for (const char* directory : {"f", "g"}) {
+    ASSERT_EXIT_CODE(RunTool("plot.py", {Path("a"), "--output=" + Path(directory)}), 0);
+  }
+  EXPECT_EQ(ReadText(Path("f/outliers.svg")), ReadText(Path("g/outliers.svg")));
+  EXPECT_EQ(ReadText(Path("f/outliers.png")), ReadText(Path("g/outliers.png")));
+}
+
+TEST_F(PlotTest, DrawsReportsBenchmarksAndTrajectories) {
+  SKIP_WITHOUT_MATPLOTLIB();
+  const std::string matches = Simulate("m", {"--pairs=3"});
+  const Args compare = {"--matches=" + matches, "--solvers=4pt,6pt-ventura"};
+  ASSERT_EXIT_CODE(RunTool("compare", compare + Args{"--per_pair", "--json=" + Path("pairs.json")}),
+                   0);
+  ASSERT_EXIT_CODE(RunTool("compare", compare + Args{"--json=" + Path("medians.json")}), 0);
+  ASSERT_EXIT_CODE(
+      RunTool("benchmark", {"--solvers=4pt,3pt", "--trials=10", "--json=" + Path("bench.json")}),
+      0);
+  WritePoses(Path("truth.txt"));
+  WriteText(Path("estimate.txt"), "# time x y z qx qy qz qw\n0 0 0 0 0 0 0 1\n1 0 0 9 0 0 0 1\n");
+  const Outcome run =
+      RunTool("plot.py", {Path("pairs.json"), Path("medians.json"), Path("bench.json"),
+                          "--truth=" + Path("truth.txt"), "--estimate=" + Path("estimate.txt"),
+                          "--output=" + Path("f")});
+  ASSERT_EXIT_CODE(run, 0);
+  for (const char* name : {"pairs-cumulative", "medians-rotation_deg",
+                           "medians-translation_dir_deg", "bench-runtime", "trajectory"}) {
+    ExpectFigure(Path("f/") + name);
+  }
+}
+
+TEST_F(PlotTest, SaysWhatItCannotDraw) {
+  SKIP_WITHOUT_MATPLOTLIB();
+  WriteText(Path("broken.json"), "{");
+  WriteText(Path("other.json"), "{\"format\": \"something 1\"}");
+  WriteText(Path("half.json"), "{\"format\": \"rigel-experiment 1\", \"experiment\": \"x\"}");
+  WriteText(Path("short.txt"), "1 2 3\n");
+  WriteText(Path("nan.txt"), "1 0 0 nan 0 1 0 0 0 0 1 0\n");
+  fs::create_directories(Path("empty"));
+  const std::string output = "--output=" + Path("f");
+  for (const Args& args :
+       {Args{Path("broken.json")}, Args{Path("other.json")}, Args{Path("half.json")},
+        Args{Path("missing.json")}, Args{Path("empty")}}) {
+    const Outcome run = RunTool("plot.py", args + Args{output});
+    EXPECT_EXIT_CODE(run, 1);
+    EXPECT_THAT(run.err, AllOf(HasSubstr(args[0]), Not(HasSubstr("Traceback"))));
+  }
+  for (const char* name : {"short.txt", "nan.txt"}) {
+    const Outcome run = RunTool("plot.py", {"--estimate=" + Path(name), output});
+    EXPECT_EXIT_CODE(run, 1);
+    EXPECT_THAT(run.err, HasSubstr(Path(name) + ":1: "));
+  }
+  EXPECT_EXIT_CODE(RunTool("plot.py", {output}), 2);
+  EXPECT_EXIT_CODE(RunTool("plot.py", {"--help"}), 0);
+}
+
+TEST_F(PlotTest, WithoutMatplotlibItSaysSo) {
+  HideMatplotlib();
+  const Outcome run = RunTool("plot.py", {"x.json"});
+  EXPECT_EXIT_CODE(run, 3);
+  EXPECT_THAT(run.err, HasSubstr("apt install python3-matplotlib"));
+  EXPECT_EXIT_CODE(RunTool("plot.py", {"--help"}), 0);
+}
+
+}  // namespace
+}  // namespace rigel

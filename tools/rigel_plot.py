@@ -1,0 +1,591 @@
+#!/usr/bin/env python3
+"""Figures (PNG and SVG) and a self-contained HTML page from the results of Rigel's programs.
+
+  rigel_plot.py DIR                        the results of rigel_experiment in DIR
+  rigel_plot.py report.json                rigel_compare --json: cumulative error curves (with
+                                           --per_pair) or bars of the medians
+  rigel_plot.py benchmark.json             rigel_benchmark --json: bars of the solvers' times
+  rigel_plot.py --estimate=E --truth=T     two trajectories in KITTI's format (12 numbers a line)
+                                           or TUM's (time x y z qx qy qz qw), from above
+
+Exit code: 0 done, 1 failed, 2 wrong flag, 3 matplotlib is missing.
+"""
+import argparse
+import base64
+import html
+import json
+import math
+import os
+import re
+import sys
+
+NO_MATPLOTLIB = 3
+GUARD = "RIGEL_PLOT_SECOND_PYTHON"
+
+try:
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from matplotlib.lines import Line2D
+    from PIL import Image
+except ImportError:
+    # Debian's matplotlib is with Debian's python, which need not come first in PATH.
+    debian = "/usr/bin/python3"
+    if os.path.exists(debian) and os.path.realpath(sys.executable) != os.path.realpath(debian) \
+            and GUARD not in os.environ:
+        os.environ[GUARD] = "1"
+        os.execv(debian, [debian] + sys.argv)
+    if not {"-h", "--help"} & set(sys.argv):
+        print("rigel_plot.py: matplotlib is missing (Debian: apt install python3-matplotlib)",
+              file=sys.stderr)
+        sys.exit(NO_MATPLOTLIB)
+
+# Okabe and Ito's colours, told apart by colour-blind readers; markers tell them apart in print.
+BLACK, GREY = "#000000", "#7f7f7f"
+ORANGE, SKY, GREEN = "#E69F00", "#56B4E9", "#009E73"
+BLUE, RED, PINK = "#0072B2", "#D55E00", "#CC79A7"
+STYLES = {
+    "17pt-li": (GREY, "s"), "6pt-stewenius": (PINK, "D"), "6pt-ventura": (ORANGE, "^"),
+    "5pt+1": (ORANGE, "P"), "2pt-choi": (BLACK, "x"), "2pt-ackermann": (SKY, "+"),
+    "4pt-lee": (SKY, "v"), "4pt-liu": (GREEN, "<"), "4pt-sweeney": (PINK, ">"),
+    "4pt-approx": (BLUE, "o"), "4pt-axis-approx": (RED, "*"), "3pt-approx": (RED, "o"),
+    "4pt-approx-polished": (SKY, "v"), "4pt-axis-approx-polished": (ORANGE, "^"),
+    "3pt-approx-polished": (ORANGE, "^"), "4pt": (BLACK, "+"), "4pt-axis": (GREY, "x"),
+    "3pt": (BLACK, "+"),
+}
+SPARE = [BLACK, BLUE, GREEN, SKY, ORANGE, PINK, RED, GREY]
+
+METRICS = [("rotation_deg", r"rotation error [deg]", 1.0),
+           ("translation_dir_deg", r"translation direction error [deg]", 1.0)]
+SCALE = ("scale", "scale error [%]", 100.0)
+LOG_Y = {"rotation-angle", "outliers", "match-count", "inter-share"}
+LOG_X = {"match-count"}
+LOOPS = {"paper": "largest inlier count, as the paper", "rigel": "Rigel's RANSAC"}
+
+
+class Bad(Exception):
+    """A message for the user."""
+
+
+def styles_of(solvers):
+    """Colour and marker of each solver of a figure: its own, or the first colour that is free."""
+    styles = {}
+    for number, solver in enumerate(solvers):
+        color, marker = STYLES.get(solver, (SPARE[number % len(SPARE)], "o"))
+        taken = {c for c, _ in styles.values()}
+        if color in taken:
+            color = next((c for c in SPARE if c not in taken), color)
+        styles[solver] = (color, marker)
+    return styles
+
+
+def unique(items):
+    return list(dict.fromkeys(items))
+
+
+def median(row, stage, metric, factor):
+    value = row.get(stage, {}).get(metric, {}).get("median")
+    return None if value is None else factor * value
+
+
+def new_figure(rows, columns, width, height):
+    figure, axes = plt.subplots(rows, columns, figsize=(width, height), squeeze=False)
+    return figure, axes
+
+
+def solver_handles(solvers, line="-"):
+    return [Line2D([], [], color=color, marker=marker, markersize=5, lw=1.2, ls=line, label=solver)
+            for solver, (color, marker) in styles_of(solvers).items()]
+
+
+def stage_handles(bound):
+    handles = [Line2D([], [], color=BLACK, lw=1.1, ls="--", label="raw"),
+               Line2D([], [], color=BLACK, lw=1.6, ls="-", label="refined")]
+    if bound:
+        handles.append(Line2D([], [], color=BLACK, lw=1.6, ls=":", label="Cramér-Rao bound (RMS)"))
+    return handles
+
+
+def legends(figure, solvers, bound, top):
+    """Solvers in the upper lines, line styles below them; returns where the axes may begin."""
+    room = int(figure.get_figwidth() / (0.5 + 0.062 * max(map(len, solvers))))
+    columns = math.ceil(len(solvers) / math.ceil(len(solvers) / max(1, room)))
+    lines = math.ceil(len(solvers) / columns)
+    step = 0.23 / figure.get_figheight()
+    figure.legend(handles=solver_handles(solvers), loc="upper center", ncol=columns,
+                  bbox_to_anchor=(0.5, top), frameon=False, fontsize=8.5, columnspacing=1.4)
+    below = top - step * lines
+    figure.legend(handles=stage_handles(bound), loc="upper center", ncol=3,
+                  bbox_to_anchor=(0.5, below), frameon=False, fontsize=8.5)
+    return below - step - 0.1 / figure.get_figheight()
+
+
+def draw_curves(axis, rows, solvers, metric, factor):
+    """Raw dashed, refined solid, bound dotted. True if there is a bound."""
+    bound = {}
+    for solver, (color, marker) in styles_of(solvers).items():
+        mine = [r for r in rows if r["solver"] == solver]
+        for stage, line, width, size in (("raw", "--", 1.1, 4.5), ("refined", "-", 1.4, 3)):
+            points = [(r["x"], median(r, stage, metric, factor)) for r in mine]
+            points = [p for p in points if p[1] is not None]
+            if points:
+                axis.plot(*zip(*points), color=color, marker=marker, ls=line, lw=width,
+                          markersize=size, markerfacecolor="none" if stage == "raw" else color)
+        for r in mine:
+            value = median(r, "bound", metric, factor)
+            if value is not None:
+                bound.setdefault(r["x"], []).append(value)
+    if bound:
+        points = sorted((x, sorted(v)[len(v) // 2]) for x, v in bound.items())
+        axis.plot(*zip(*points), color=BLACK, ls=":", lw=2.0, zorder=5)
+    return bool(bound)
+
+
+def plain_ticks(axis):
+    """Of a logarithmic axis: 0.02, 0.05, 0.1 instead of powers of ten."""
+    low, high = axis.get_view_interval()
+    few = math.log10(high / low) < 2.5 if low > 0 else False
+    axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5) if few else (1,),
+                                                        numticks=20))
+    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda x, _: f"{x:g}"))
+    axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+
+
+def finish_axis(axis, log_x, log_y):
+    axis.grid(True, color="#dddddd", lw=0.6)
+    axis.set_axisbelow(True)
+    axis.tick_params(labelsize=8)
+    if log_x:
+        axis.set_xscale("log")
+        plain_ticks(axis.xaxis)
+    if log_y:
+        axis.set_yscale("log")
+        plain_ticks(axis.yaxis)
+        axis.grid(True, which="minor", color="#eeeeee", lw=0.4)
+    else:
+        axis.set_ylim(bottom=0)
+
+
+def plot_curves(report, loop):
+    name = report["experiment"]
+    rows = [r for r in report["results"] if r["loop"] == loop]
+    motions = unique(r["motion"] for r in rows)
+    solvers = unique(r["solver"] for r in rows)
+    metrics = METRICS + ([SCALE] if name == "inter-share" else [])
+    # The paper's grid; a single motion has its quantities side by side.
+    by_motion = len(motions) > 1
+    shape = (len(metrics), len(motions)) if by_motion else (1, len(metrics))
+    figure, axes = new_figure(*shape, 10.5 if shape[1] > 2 else 8, 6.6 if by_motion else 4.1)
+    any_bound = False
+    for i, (metric, label, factor) in enumerate(metrics):
+        for j, motion in enumerate(motions):
+            axis = axes[i][j] if by_motion else axes[0][i]
+            mine = [r for r in rows if r["motion"] == motion]
+            any_bound |= draw_curves(axis, mine, solvers, metric, factor)
+            finish_axis(axis, name in LOG_X, name in LOG_Y)
+            if by_motion and i == 0:
+                axis.set_title(motion + " motion", fontsize=10)
+            if not by_motion or j == 0:
+                axis.set_ylabel(label, fontsize=9)
+            if not by_motion or i + 1 == len(metrics):
+                axis.set_xlabel(report["x"]["label"], fontsize=9)
+    figure.suptitle(f"{name}: medians, {LOOPS.get(loop, loop)}", fontsize=11, y=0.99)
+    top = legends(figure, solvers, any_bound, 0.99 - 0.25 / figure.get_figheight())
+    figure.subplots_adjust(left=0.7 / figure.get_figwidth(), right=0.985,
+                           bottom=0.5 / figure.get_figheight(), wspace=0.22, hspace=0.14,
+                           top=top - (0.2 if by_motion else 0.05) / figure.get_figheight())
+    return figure
+
+
+def plot_sequences(report, loop):
+    """One group of markers a drive: raw hollow, refined filled, bound a black line."""
+    rows = [r for r in report["results"] if r["loop"] == loop]
+    sequences = unique(r["sequence"] for r in rows)
+    solvers = unique(r["solver"] for r in rows)
+    figure, axes = new_figure(2, 1, 10.5, 6.6)
+    for i, (metric, label, factor) in enumerate(METRICS):
+        axis = axes[i][0]
+        for k, sequence in enumerate(sequences):
+            if k % 2:
+                axis.axvspan(k - 0.5, k + 0.5, color="#f2f2f2", lw=0)
+            bounds = []
+            for number, (solver, (color, marker)) in enumerate(styles_of(solvers).items()):
+                x = k + 0.8 * ((number + 0.5) / len(solvers) - 0.5)
+                for row in rows:
+                    if row["sequence"] != sequence or row["solver"] != solver:
+                        continue
+                    raw = median(row, "raw", metric, factor)
+                    refined = median(row, "refined", metric, factor)
+                    bound = median(row, "bound", metric, factor)
+                    if raw is not None:
+                        axis.plot(x, raw, marker=marker, color=color, markersize=5.5,
+                                  markerfacecolor="none")
+                    if refined is not None:
+                        axis.plot(x, refined, marker=marker, color=color, markersize=3.5)
+                    if bound is not None:
+                        bounds.append(bound)
+            if bounds:
+                axis.plot([k - 0.45, k + 0.45], [sorted(bounds)[len(bounds) // 2]] * 2,
+                          color=BLACK, ls=":", lw=1.8)
+        finish_axis(axis, False, True)
+        axis.grid(False, axis="x")
+        axis.set_xlim(-0.5, len(sequences) - 0.5)
+        axis.set_xticks(range(len(sequences)), sequences)
+        axis.set_ylabel(label, fontsize=9)
+    axes[1][0].set_xlabel("drive", fontsize=9)
+    figure.suptitle(f"{report['experiment']}: medians, {LOOPS.get(loop, loop)}", fontsize=11,
+                    y=0.99)
+    figure.legend(handles=solver_handles(solvers, ""), loc="upper center", ncol=len(solvers),
+                  bbox_to_anchor=(0.5, 0.962), frameon=False, fontsize=8.5, columnspacing=1.2)
+    figure.legend(handles=[
+        Line2D([], [], color=BLACK, marker="o", ls="", markerfacecolor="none", label="raw"),
+        Line2D([], [], color=BLACK, marker="o", ls="", markersize=3.5, label="refined"),
+        Line2D([], [], color=BLACK, ls=":", lw=1.8, label="Cramér-Rao bound (RMS)")],
+        loc="upper center", ncol=3, bbox_to_anchor=(0.5, 0.93), frameon=False, fontsize=8.5)
+    figure.subplots_adjust(left=0.065, right=0.985, bottom=0.075, top=0.875, hspace=0.12)
+    return figure
+
+
+def faded(color, share):
+    return tuple(share * c + 1 - share for c in matplotlib.colors.to_rgb(color))
+
+
+def bars(solvers, series, label, title, colors=None):
+    """Horizontal bars on a logarithmic axis; `series` is a list of (name, values)."""
+    height = 0.8 / len(series)
+    figure, axes = new_figure(1, 1, 7.5, 1.2 + 0.36 * len(solvers) * max(1, 0.6 * len(series)))
+    axis = axes[0][0]
+    fades = [1.0, 0.45, 0.15, 0.0]  # of the colour, the rest is white
+    for n, (name, values) in enumerate(series):
+        for k, (solver, value) in enumerate(zip(solvers, values)):
+            if value is None or not value > 0:
+                continue
+            y = k + height * (n - (len(series) - 1) / 2)
+            color = STYLES.get(solver, (GREY, ""))[0]
+            axis.barh(y, value, height=0.92 * height, color=faded(color, fades[n % len(fades)]),
+                      edgecolor=color, lw=0.8)
+            axis.text(value * 1.04, y, f"{value:.3g}", va="center", fontsize=7.5)
+    axis.set_yticks(range(len(solvers)), solvers, fontsize=8.5)
+    axis.invert_yaxis()
+    axis.set_xscale("log")
+    plain_ticks(axis.xaxis)
+    axis.margins(x=0.12)
+    axis.grid(True, axis="x", color="#dddddd", lw=0.6)
+    axis.set_axisbelow(True)
+    axis.set_xlabel(label, fontsize=9)
+    axis.set_title(title, fontsize=10, pad=22 if len(series) > 1 else 6)
+    if len(series) > 1:
+        axis.legend(handles=[matplotlib.patches.Patch(
+            facecolor=faded(GREY, fades[n % len(fades)]), edgecolor=GREY, label=name)
+            for n, (name, _) in enumerate(series)], loc="lower center", frameon=False,
+            fontsize=8, ncol=len(series), bbox_to_anchor=(0.5, 1.0), borderpad=0.1)
+    figure.tight_layout()
+    return figure
+
+
+def plot_runtime(report):
+    rows = report["results"]
+    solvers = unique(r["solver"] for r in rows)
+    series = []
+    for loop in unique(r["loop"] for r in rows):
+        for part in ("ransac", "refine"):
+            if part == "refine" and loop != "rigel":
+                continue
+            values = []
+            for solver in solvers:
+                mine = [(r["pairs"] - r["failures"], r["time_ms"][part]["mean"]) for r in rows
+                        if r["solver"] == solver and r["loop"] == loop and "time_ms" in r]
+                count = sum(n for n, _ in mine)
+                values.append(sum(n * t for n, t in mine) / count if count else None)
+            series.append((f"RANSAC, loop {loop}" if part == "ransac" else "refinement", values))
+    if not any(v for _, values in series for v in values):
+        return None
+    return bars(solvers, series, "mean time a pair [ms]", f"{report['experiment']}: time")
+
+
+def plot_experiment(report):
+    name = report["experiment"]
+    figures = []
+    for loop in unique(r["loop"] for r in report["results"]):
+        make = plot_curves if "x" in report else plot_sequences
+        figures.append((name if loop == "paper" else f"{name}-{loop}", make(report, loop)))
+    if "x" not in report or name == "image-noise":
+        runtime = plot_runtime(report)
+        if runtime is not None:
+            figures.append((name + "-runtime", runtime))
+    return figures
+
+
+def plot_report(report, stem):
+    pairs = report.get("pair_results")
+    solvers = unique(r["solver"] for r in report["results"])
+    if not pairs:
+        rows = {r["solver"]: r for r in report["results"] if r["sequence"] == "all"}
+        figures = []
+        for metric, label, factor in METRICS:
+            series = [(stage, [median(rows[s], stage, metric, factor) for s in solvers])
+                      for stage in ("raw", "refined", "bound")]
+            if any(v for _, values in series for v in values):
+                figures.append((f"{stem}-{metric}", bars(solvers, series, label, "medians")))
+        return figures
+    figure, axes = new_figure(1, 2, 9, 4.6)
+    for axis, (metric, label, factor) in zip(axes[0], METRICS):
+        for solver, (color, marker) in styles_of(solvers).items():
+            for stage, line in (("raw", "--"), ("refined", "-")):
+                values = [p["solvers"].get(solver, {}).get(stage, {}).get(metric) for p in pairs]
+                values = sorted(factor * v for v in values if v is not None and v > 0)
+                # A pair without an estimate is never within any error.
+                shares = [100.0 * (k + 1) / len(pairs) for k in range(len(values))]
+                if values:
+                    axis.step(values, shares, where="post", color=color, ls=line, lw=1.3,
+                              marker=marker, markersize=4.5, markevery=max(1, len(values) // 6),
+                              markerfacecolor="none" if stage == "raw" else color)
+        axis.set_xscale("log")
+        plain_ticks(axis.xaxis)
+        axis.set_ylim(0, 101)
+        axis.grid(True, color="#dddddd", lw=0.6)
+        axis.tick_params(labelsize=8)
+        axis.set_xlabel(label, fontsize=9)
+    axes[0][0].set_ylabel("pairs within the error [%]", fontsize=9)
+    top = legends(figure, solvers, False, 0.99)
+    figure.subplots_adjust(left=0.07, right=0.985, bottom=0.11, top=top - 0.01, wspace=0.14)
+    return [(stem + "-cumulative", figure)]
+
+
+def plot_benchmark(report, stem):
+    rows = report["solvers"]
+    solvers = unique(r["solver"] for r in rows)
+    series = []
+    for kind in ("intra", "inter"):
+        times = {r["solver"]: r["median_us"] for r in rows if r["matches"] == kind}
+        if times:
+            series.append((f"{kind}-camera samples", [times.get(s) for s in solvers]))
+    return [(stem + "-runtime",
+             bars(solvers, series, "median time of a call [µs]", "minimal solvers"))]
+
+
+def read_trajectory(path):
+    """Positions (x, y, z) of a file in KITTI's or TUM's format."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            lines = [(n, l.split()) for n, l in enumerate(file, 1)
+                     if l.strip() and not l.startswith("#")]
+    except (OSError, UnicodeDecodeError) as error:
+        raise Bad(f"{path}: cannot be read: {error}") from error
+    points = []
+    for number, words in lines:
+        if len(words) not in (8, 12):
+            raise Bad(f"{path}:{number}: {len(words)} numbers, expected 12 (KITTI) or 8 (TUM)")
+        try:
+            values = [float(w) for w in words]
+        except ValueError as error:
+            raise Bad(f"{path}:{number}: {error}") from error
+        if not all(map(math.isfinite, values)):
+            raise Bad(f"{path}:{number}: a number is not finite")
+        points.append((values[3], values[7], values[11]) if len(words) == 12
+                      else tuple(values[1:4]))
+    if not points:
+        raise Bad(f"{path}: there is no pose in it")
+    return points
+
+
+def plot_trajectory(estimate_path, truth_path):
+    tracks = [("truth", truth_path, BLACK, ":", 2.0), ("estimate", estimate_path, RED, "-", 1.3)]
+    tracks = [(n, read_trajectory(p), c, l, w) for n, p, c, l, w in tracks if p]
+    # The vertical is the axis along which the first track extends least.
+    spans = [max(p[k] for p in tracks[0][1]) - min(p[k] for p in tracks[0][1]) for k in range(3)]
+    down = min(range(3), key=lambda k: (spans[k], k != 1))
+    across, ahead = [k for k in range(3) if k != down]
+    figure, axes = new_figure(1, 1, 6.5, 6.5)
+    axis = axes[0][0]
+    for name, points, color, line, width in tracks:
+        axis.plot([p[across] for p in points], [p[ahead] for p in points], color=color, ls=line,
+                  lw=width, label=name)
+        axis.plot(points[-1][across], points[-1][ahead], marker="s", color=color, markersize=5)
+    start = tracks[0][1][0]
+    axis.plot(start[across], start[ahead], marker="o", color=BLUE, ls="", markersize=6,
+              label="start")
+    axis.set_aspect("equal", adjustable="datalim")
+    axis.grid(True, color="#dddddd", lw=0.6)
+    axis.set_xlabel("xyz"[across] + " [m]", fontsize=9)
+    axis.set_ylabel("xyz"[ahead] + " [m]", fontsize=9)
+    axis.set_title("trajectory from above (squares: ends)", fontsize=10)
+    axis.legend(frameon=False, fontsize=9)
+    figure.tight_layout()
+    return [("trajectory", figure)]
+
+
+def save(figure, directory, name, dpi):
+    """Writes both files; returns their paths, the SVG's last."""
+    paths = [os.path.join(directory, f"{name}.{kind}") for kind in ("png", "svg")]
+    figure.savefig(paths[0], dpi=dpi, metadata={"Software": None})
+    figure.savefig(paths[1], metadata={"Date": None, "Creator": "rigel_plot.py"})
+    plt.close(figure)
+    # 128 colours are enough for lines and letters; a third of the size.
+    with Image.open(paths[0]) as image:
+        image.convert("RGB").quantize(128).save(paths[0], optimize=True)
+    with open(paths[1], encoding="utf-8") as file:
+        text = file.read()
+    # A hundredth of a point is fine enough; half the size.
+    text = re.sub(r"(\d\.\d\d)\d+", r"\1", text)
+    text = re.sub(r"(<use [^>]*); stroke-linejoin: miter", r"\1", text)
+    text = re.sub(r"\n +", "\n", text)
+    with open(paths[1], "w", encoding="utf-8") as file:
+        file.write(text)
+    return paths
+
+
+def read_json(path):
+    try:
+        with open(path, encoding="utf-8") as file:
+            value = json.load(file)
+    except (OSError, ValueError) as error:
+        raise Bad(f"{path}: cannot be read: {error}") from error
+    if not isinstance(value, dict):
+        raise Bad(f"{path}: not a report of Rigel")
+    return value
+
+
+def plot_file(path):
+    """(name, figure) of each figure of a report; the report."""
+    report = read_json(path)
+    stem = os.path.splitext(os.path.basename(path))[0]
+    kind = report.get("format")
+    try:
+        if kind == "rigel-experiment 1":
+            return plot_experiment(report), report
+        if kind == "rigel-report 1":
+            return plot_report(report, stem), report
+        if kind == "rigel-benchmark 1":
+            return plot_benchmark(report, stem), report
+    except (KeyError, TypeError, AttributeError, IndexError) as error:
+        raise Bad(f"{path}: not of its format {kind!r}: {error!r}") from error
+    if kind == "rigel-claims 1":
+        return [], report
+    raise Bad(f"{path}: its format is {kind!r}, which has no figure")
+
+
+PAGE = """<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>Rigel: experiments</title>
+<style>
+body {{ font: 15px/1.45 sans-serif; max-width: 1150px; margin: 2em auto; padding: 0 1em; }}
+img {{ max-width: 100%; }}
+table {{ border-collapse: collapse; }}
+td, th {{ border: 1px solid #bbb; padding: .3em .5em; text-align: left; vertical-align: top; }}
+pre {{ font-size: 12px; line-height: 1.25; overflow-x: auto; background: #f6f6f6; padding: .7em; }}
+.confirmed {{ background: #d9efe6; }} .partly {{ background: #fdf1cf; }}
+.not-confirmed {{ background: #f8dccb; }}
+</style></head><body>
+<h1>Rigel: experiments</h1>
+{body}
+</body></html>
+"""
+
+
+def claims_html(report):
+    lines = ["<h2>Claims</h2><table><tr><th>of</th><th>experiment</th><th>claim</th>"
+             "<th>verdict</th><th>figures</th><th>where not</th></tr>"]
+    for claim in report["claims"]:
+        cells = [claim[k] for k in ("of", "experiment", "claim", "verdict", "figures", "where_not")]
+        kind = claim["verdict"].replace(" ", "-")
+        lines.append(f'<tr class="{html.escape(kind)}">' +
+                     "".join(f"<td>{html.escape(c)}</td>" for c in cells) + "</tr>")
+    return "\n".join(lines + ["</table>"])
+
+
+def write_html(path, sections):
+    text = PAGE.format(body="\n".join(sections))
+    try:
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+    except OSError as error:
+        raise Bad(f"{path}: cannot be written: {error}") from error
+
+
+def image_html(svg_path, name):
+    # As an image, so that names within one figure do not meet those of another.
+    with open(svg_path, "rb") as file:
+        data = base64.b64encode(file.read()).decode("ascii")
+    return f'<img alt="{html.escape(name)}" src="data:image/svg+xml;base64,{data}">'
+
+
+def inputs_of(paths):
+    files = []
+    for path in paths:
+        if os.path.isdir(path):
+            found = sorted(f for f in os.listdir(path) if f.endswith(".json"))
+            if not found:
+                raise Bad(f"{path}: no results (*.json) in this directory")
+            files += [os.path.join(path, f) for f in found]
+        else:
+            files.append(path)
+    return files
+
+
+def run(arguments):
+    directory = arguments.output
+    try:
+        os.makedirs(directory, exist_ok=True)
+    except OSError as error:
+        raise Bad(f"{directory}: cannot be made: {error}") from error
+    sections = {"claims": [], "other": []}
+    written = 0
+
+    def add(figures, title, table_path=None):
+        nonlocal written
+        part = [f"<h2>{html.escape(title)}</h2>"]
+        for name, figure in figures:
+            try:
+                paths = save(figure, directory, name, arguments.dpi)
+            except OSError as error:
+                raise Bad(f"{directory}: cannot be written: {error}") from error
+            written += 1
+            part.append(image_html(paths[1], name))
+        if table_path and os.path.exists(table_path):
+            with open(table_path, encoding="utf-8") as file:
+                part.append("<pre>" + html.escape(file.read()) + "</pre>")
+        sections["other"].append("\n".join(part))
+
+    for path in inputs_of(arguments.inputs):
+        figures, report = plot_file(path)
+        if report["format"] == "rigel-claims 1":
+            sections["claims"].append(claims_html(report))
+            continue
+        title = report.get("experiment", os.path.basename(path))
+        if "about" in report:
+            title += ": " + report["about"]
+        add(figures, title, os.path.splitext(path)[0] + ".txt")
+    if arguments.estimate or arguments.truth:
+        add(plot_trajectory(arguments.estimate, arguments.truth), "Trajectory")
+    if arguments.html:
+        write_html(arguments.html, sections["claims"] + sections["other"])
+        print(f"wrote {arguments.html}", file=sys.stderr)
+    print(f"wrote {written} figures (PNG and SVG) to {directory}", file=sys.stderr)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, allow_abbrev=False,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("inputs", nargs="*", metavar="INPUT", help="reports or directories")
+    parser.add_argument("--output", default="figures", help="directory of the figures; made")
+    parser.add_argument("--html", help="join tables and figures in this one file")
+    parser.add_argument("--dpi", type=int, default=130, help="resolution of the PNG files")
+    parser.add_argument("--estimate", help="trajectory to draw")
+    parser.add_argument("--truth", help="true trajectory to draw")
+    arguments = parser.parse_args()
+    if not 10 <= arguments.dpi <= 1200:
+        parser.error("--dpi: expected 10 to 1200")
+    if not arguments.inputs and not arguments.estimate and not arguments.truth:
+        parser.error("nothing to draw: name a report, a directory or --estimate")
+    plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "rigel", "font.size": 9,
+                         "axes.linewidth": 0.7, "figure.max_open_warning": 0})
+    try:
+        run(arguments)
+    except Bad as error:
+        print(f"rigel_plot.py: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
