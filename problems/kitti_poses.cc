@@ -117,14 +117,12 @@ bool ReadDrivenMotions(const std::string& directory, int every, std::vector<Driv
   for (const std::filesystem::path& file : files) {
     std::vector<Pose> poses;
     if (!ReadKittiPoses(file.string(), &poses, error)) return false;
-    const auto step = static_cast<size_t>(every);
-    for (size_t k = step; k < poses.size(); k += step) {
-      result.push_back({file.stem().string(), poses[k - step], poses[k]});
+    for (size_t k = 1; k < poses.size(); k += static_cast<size_t>(every)) {
+      result.push_back({file.stem().string(), poses[k - 1], poses[k]});
     }
   }
   if (result.empty()) {
-    *error = PrintablePath(directory) + ": no motion: no file has two poses that are " +
-             std::to_string(every) + (every == 1 ? " frame" : " frames") + " apart";
+    *error = PrintablePath(directory) + ": no motion: no file has two poses";
     return false;
   }
   *motions = std::move(result);

@@ -28,9 +28,9 @@ struct DrivenMotion {
   Pose body2_from_body1() const { return world_from_body2.Inverse() * world_from_body1; }
 };
 
-// The motions between each `every`-th pose of the files *.txt of a directory, in byte order of
-// their names, which name the sequences; the body is the left camera. False with a message if a
-// file cannot be read or there is no motion.
+// Of the motions between consecutive poses the first and each `every`-th after it, of each of the
+// files *.txt of a directory, in byte order of their names, which name the sequences; the body is
+// the left camera. False with a message if a file cannot be read or there is no motion.
 bool ReadDrivenMotions(const std::string& directory, int every, std::vector<DrivenMotion>* motions,
                        std::string* error);
 

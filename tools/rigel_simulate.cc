@@ -39,7 +39,7 @@ DEFINE_uint64(seed, 1, "the same seed makes the same files");
 DEFINE_string(poses, "",
               "directory of KITTI odometry poses (00.txt, ...): one pair for each two consecutive "
               "frames, moved as they were; instead of --pairs, --motion and --rotation_*");
-DEFINE_int32(every, 1, "of the frames of --poses take each n-th");
+DEFINE_int32(every, 1, "of the motions between consecutive frames of --poses take each n-th");
 DEFINE_int32(threads, 1, "files made at the same time; they do not depend on it");
 
 namespace rigel {
@@ -160,7 +160,7 @@ int Run() {
     }
   }
   if (FLAGS_poses.empty() && is_given("every")) {
-    return UsageError("--every: there are no frames without --poses");
+    return UsageError("--every: there are no recorded motions without --poses");
   }
 
   std::vector<DrivenMotion> motions;

@@ -299,7 +299,7 @@ TEST_F(PosesTest, DrivesAreSimulatedOneFileAMotion) {
     EXPECT_THAT(pair.matches, SizeIs(50));
   }
   Simulate("thin", args + Args{"--every=3"});
-  EXPECT_THAT(ListMatchFiles(Path("thin"), &errors), SizeIs(2));
+  EXPECT_THAT(ListMatchFiles(Path("thin"), &errors), SizeIs(3));
 }
 
 TEST_F(PosesTest, MotionOutOfViewIsToldOnceHoweverManyThreads) {
