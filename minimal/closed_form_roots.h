@@ -78,7 +78,8 @@ inline int QuarticStarts(const double* c, double* x) {
   const double p = a2 - 6.0 * h2;
   const double q = a1 - 2.0 * h * (a2 - 4.0 * h2);
   const double r = c[0] * inverse - h * a1 + h2 * (a2 - 3.0 * h2);
-  // (y^2 + u y + v)(y^2 - u y + w), s = u^2: the largest root of s^3 + 2 p s^2 + (p^2 - 4 r) s - q^2.
+  // (y^2 + u y + v)(y^2 - u y + w), s = u^2: the largest root of s^3 + 2 p s^2 + (p^2 - 4 r) s -
+  // q^2.
   const double third = 2.0 / 3.0 * p;
   const double linear = p * p - 4.0 * r;
   const double Q = third * third - linear / 3.0;

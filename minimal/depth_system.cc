@@ -150,15 +150,16 @@ int DepthSystem<kModel>::Determinant(double* coefficients) const {
   }
 
   // Matches that do not move (or NaN) make every coefficient vanish: what is left is rounding.
-  double scale = 0.0;
-  for (int row = 0; row < (planar_ ? 2 : 3); ++row) {
-    for (int k = 0; k <= D; ++k) {
-      scale = std::max({scale, std::abs(f_[k][row][0]), std::abs(f_[k][row][1])});
+  bool moves = false;
+  for (int row = 0; row < (planar_ ? 2 : 3) && !moves; ++row) {
+    // As a rule the first entry decides.
+    for (int k = 0; k <= D && !moves; ++k) {
+      moves = std::abs(f_[k][row][0]) > kNegligible || std::abs(f_[k][row][1]) > kNegligible;
     }
   }
-  double largest = 0.0;
-  for (int k = 0; k <= degree; ++k) largest = std::max(largest, std::abs(coefficients[k]));
-  if (!(scale > kNegligible) || !(largest > 0.0) || !std::isfinite(largest)) return 0;
+  double sum = 0.0;
+  for (int k = 0; k <= degree; ++k) sum += std::abs(coefficients[k]);
+  if (!moves || !(sum > 0.0) || !std::isfinite(sum)) return 0;
   return degree;
 }
 

@@ -29,13 +29,18 @@ DirectSample::DirectSample(const PreparedMatches& matches, const int* sample) : 
     if (m.parallax2 > reference_->parallax2) reference_ = &m;
     all_intra = all_intra && m.camera1 == m.camera2;
     central_ = central_ && (r == 0 || SameCentres(m, matches[sample[0]]));
-    rows_[r] = {m.X0, m.Xc, m.Xs, m.Yc, m.Ys, m.Z0, m.K0, m.Kc, m.Ks};
+    rows_[r] = &m;
   }
   deflated_ = all_intra && !central_ && matches.alignment().contains_identity;
   if (central_) {
-    for (Row& row : rows_) row.K0 = row.Kc = row.Ks = 0.0;
+    for (int r = 0; r < 4; ++r) {
+      ConstraintRow& row = central_rows_[r];
+      row = *rows_[r];
+      row.K0 = row.Kc = row.Ks = 0.0;
+      rows_[r] = &row;
+    }
     // (1 + cos a) / 2 is the constant 1 once it is multiplied by 1 + z^2, as every row is.
-    rows_[3] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.0};
+    central_rows_[3] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.0};
   }
 }
 
@@ -45,7 +50,7 @@ void DirectSample::AddSolution(double z, Solutions* solutions) const {
   const double s = 2.0 * z * w;
   double m[4][4];
   for (int r = 0; r < 4; ++r) {
-    const Row& row = rows_[r];
+    const ConstraintRow& row = *rows_[r];
     m[r][0] = row.X0 + c * row.Xc + s * row.Xs;
     m[r][1] = c * row.Yc + s * row.Ys;
     m[r][2] = row.Z0 + c * row.Xs - s * row.Xc;

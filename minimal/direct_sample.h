@@ -22,16 +22,12 @@ namespace rigel {
 
 class DirectSample {
  public:
-  // The coefficients of n and k of one row.
-  struct Row {
-    double X0, Xc, Xs, Yc, Ys, Z0;
-    double K0, Kc, Ks;
-  };
-
   // `sample` holds four indices into `matches`, which must outlive this object.
   DirectSample(const PreparedMatches& matches, const int* sample);
+  DirectSample(const DirectSample&) = delete;
+  DirectSample& operator=(const DirectSample&) = delete;
 
-  const Row& operator[](int r) const { return rows_[r]; }
+  const ConstraintRow& operator[](int r) const { return *rows_[r]; }
   bool deflated() const { return deflated_; }
 
   // False if no match moves: nothing can be said of translation.
@@ -46,7 +42,8 @@ class DirectSample {
   const PreparedMatch* reference_;  // of largest parallax: decides the sign where |t| is not known
   bool deflated_;
   bool central_;
-  Row rows_[4];
+  const ConstraintRow* rows_[4];
+  ConstraintRow central_rows_[4];  // set and used where the sample is central only
 };
 
 // The null vector of a 4x4 matrix of rank 3: the largest row of its adjugate. Zero if the rank is

@@ -25,7 +25,7 @@ int Solve4ptLee(const PreparedMatches& matches, const int* sample, Solutions* so
   // (1 + z^2) times each entry; k of a deflated sample is divided by z.
   double x[4][3], y[4][3], z[4][3], k[4][3];
   for (int r = 0; r < 4; ++r) {
-    const DirectSample::Row& m = rows[r];
+    const ConstraintRow& m = rows[r];
     x[r][0] = m.X0 + m.Xc;
     x[r][1] = 2.0 * m.Xs;
     x[r][2] = m.X0 - m.Xc;

@@ -25,7 +25,7 @@ int Solve4ptLiu(const PreparedMatches& matches, const int* sample, Solutions* so
   // Columns of t_x, t_y, t_z and 1 as p + q a; k of a deflated sample is divided by a, a constant.
   double p[4][4], q[4][4];
   for (int r = 0; r < 4; ++r) {
-    const DirectSample::Row& m = rows[r];
+    const ConstraintRow& m = rows[r];
     p[r][0] = m.X0 + m.Xc;
     q[r][0] = m.Xs;
     p[r][1] = m.Yc;

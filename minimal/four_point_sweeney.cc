@@ -13,7 +13,7 @@ int Solve4ptSweeney(const PreparedMatches& matches, const int* sample, Solutions
   // sample is divided by z.
   double x[4][2], z[4][2], y[4][2], k[4][3];
   for (int r = 0; r < 4; ++r) {
-    const DirectSample::Row& m = rows[r];
+    const ConstraintRow& m = rows[r];
     x[r][0] = m.X0 + m.Xc;
     x[r][1] = m.Xs - m.Z0;
     z[r][0] = m.Z0 + m.Xs;

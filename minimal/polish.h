@@ -8,15 +8,15 @@
 
 namespace rigel {
 
-// Improves the approximate real roots `starts` of the polynomial c of degree N. Starts that do not
-// converge in six steps (three are enough at one degree of rotation) and duplicates are dropped.
-// Returns the number of roots.
+// Improves the approximate real roots `starts`, at most four, of the polynomial c of degree N.
+// Starts that do not converge in six steps (three are enough at one degree of rotation) and
+// duplicates are dropped. Returns the number of roots.
 template <int N>
 int PolishRoots(const double* c, const double* starts, int num_starts, double* roots) {
   constexpr int kMaxSteps = 6;
   // Quadratic convergence: the error left is of the order of the step squared.
   constexpr double kConverged = 1e-7;
-  constexpr int kLanes = (N + 1) / 2 * 2;
+  constexpr int kLanes = 4;
   if (num_starts == 0) return 0;
   double z[kLanes], step[kLanes];
   for (int l = 0; l < kLanes; ++l) z[l] = starts[l < num_starts ? l : 0];

@@ -1,5 +1,5 @@
-// Real roots of polynomials: closed forms to degree 3 and, where they are certain, to degree 5; else
-// isolation by Descartes' rule and safeguarded Newton steps.
+// Real roots of polynomials: closed forms to degree 3 and, where they are certain, to degree 5;
+// else isolation by Descartes' rule and safeguarded Newton steps.
 //
 // Coefficients ascend: p(x) = c[0] + c[1] x + ... + c[N] x^N. Every function returns the number
 // of roots that it wrote to `roots` (at most the degree), in no particular order. A leading
@@ -124,6 +124,7 @@ inline void PieceOf(const double* c, bool reversed, bool mirrored, double* piece
 template <int N>
 inline void BracketedNewton(const double* c, const Bracket* brackets, int count, double* roots) {
   constexpr int kLanes = (N + 1) / 2 * 2;
+  if (count == 0) return;  // there is no bracket to fill the lanes with
   double p[N + 1][kLanes], x[kLanes], low[kLanes], high[kLanes];
   bool low_negative[kLanes], done[kLanes];
   for (int l = 0; l < kLanes; ++l) {
@@ -358,7 +359,7 @@ inline int RealRoots<2>(const double* c, double* roots) {
   return 2;
 }
 
-// Roots of a cubic to some 1e-8 of the largest: starts of an iteration.
+// Roots of a cubic to 1e-6 of the largest, as a rule to 1e-8: starts of an iteration.
 inline int CubicStarts(const double* c, double* roots) {
   if (!polynomial_internal::AllFinite<3>(c)) return 0;
   if (polynomial_internal::LeadingIsZero<3>(c)) return RealRoots<2>(c, roots);
@@ -419,9 +420,9 @@ namespace polynomial_internal {
 // Isolation, and Newton on all roots at once. The real line is cut into (0, 1), (-1, 0) and,
 // through the reversed polynomial, what lies beyond 1 and -1. On each piece the sign variations of
 // the Bernstein coefficients bound the number of roots (Descartes): 0 variations, no root; 1,
-// exactly one; more, the piece is halved (Collins and Akritas 1976; Lane and Riesenfeld 1981). So no
-// real root is lost but for two that are closer than 1e-9 of their piece, which are returned once.
-// c[0] and c[N] must not be zero. Writes at most `capacity` roots; returns their number.
+// exactly one; more, the piece is halved (Collins and Akritas 1976; Lane and Riesenfeld 1981). So
+// no real root is lost but for two that are closer than 1e-9 of their piece, which are returned
+// once. c[0] and c[N] must not be zero. Writes at most `capacity` roots; returns their number.
 template <int N>
 int IsolatedRoots(const double* c, int capacity, double* roots) {
   // Both pieces that meet at 1 (or -1) must see the same sign there.
@@ -451,8 +452,8 @@ int IsolatedRoots(const double* c, int capacity, double* roots) {
       continue;
     }
     if (variations > 1 || !exact) {
-      found = BracketsInUnitInterval<N>(
-          near, end, true, bracket, capacity - num_brackets, brackets + num_brackets, &exact);
+      found = BracketsInUnitInterval<N>(near, end, true, bracket, capacity - num_brackets,
+                                        brackets + num_brackets, &exact);
       num_brackets += found;
     }
     if (exact && found == variations) continue;
@@ -464,8 +465,8 @@ int IsolatedRoots(const double* c, int capacity, double* roots) {
       }
       continue;
     }
-    num_brackets += BracketsInUnitInterval<N>(
-        far, end, false, bracket, capacity - num_brackets, brackets + num_brackets, &exact);
+    num_brackets += BracketsInUnitInterval<N>(far, end, false, bracket, capacity - num_brackets,
+                                              brackets + num_brackets, &exact);
   }
   BracketedNewton<N>(c, brackets, num_brackets, roots);
   return num_brackets;

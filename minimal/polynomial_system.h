@@ -7,11 +7,6 @@
 // has (from the Hilbert function, computed once modulo a prime), so that no rank is ever decided
 // from numbers.
 //
-// The real eigenvalues come from the characteristic polynomial of the Hessenberg form, by
-// Descartes' rule: less work than the QR algorithm, and accurate for roots near the centre
-// about which it is expanded. So variables should be scaled such that the solutions of interest are
-// below 1.
-//
 // Monomials x^i y^j z^k are ordered by degree, so those of degree <= d are the first
 // NumMonomials(d). A polynomial is the array of its coefficients in that order. No heap.
 #ifndef RIGEL_MINIMAL_POLYNOMIAL_SYSTEM_H_
@@ -20,7 +15,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <utility>
+
+#include "rigel/minimal/action_matrix.h"
 
 namespace rigel::polynomial_system {
 
@@ -61,25 +60,37 @@ constexpr MonomialTable MakeMonomialTable() {
 
 inline constexpr MonomialTable kMonomials = MakeMonomialTable();
 
-// product += sign a b, where a has degree A <= 4 and b degree B <= 2.
-template <int A, int B>
-inline void AddProduct(const double* a, const double* b, double sign, double* product) {
-  for (int i = 0; i < NumMonomials(A); ++i) {
-    const double value = sign * a[i];
-    for (int j = 0; j < NumMonomials(B); ++j) {
-      product[kMonomials.product[i][j]] += value * b[j];
-    }
-  }
+template <int B, size_t kI, size_t... kJ>
+inline void UnrolledAddTerm(double value, const double* b, double* __restrict product,
+                            std::index_sequence<kJ...>) {
+  ((product[kMonomials.product[kI][kJ]] += value * b[kJ]), ...);
 }
 
-// The n x n action of multiplication by x on the monomials that are a basis of the solutions'
-// coordinate ring: row b holds x times monomial b. The first four monomials are 1, x, y, z.
-template <int kMaxSize>
-struct ActionMatrix {
-  int size = 0;
-  // Two more rows for RealSolutions.
-  double entries[kMaxSize + 2][kMaxSize];
-};
+template <int B, size_t... kI>
+inline void UnrolledAddProduct(const double* a, const double* b, double sign,
+                               double* __restrict product, std::index_sequence<kI...>) {
+  (UnrolledAddTerm<B, kI>(sign * a[kI], b, product, std::make_index_sequence<NumMonomials(B)>()),
+   ...);
+}
+
+// product += sign a b, where a has degree A <= 4 and b degree B <= 2. Unrolled, so that the places
+// of the coefficients are constants. `product` overlaps neither a nor b.
+template <int A, int B>
+inline void AddProduct(const double* a, const double* b, double sign, double* __restrict product) {
+  UnrolledAddProduct<B>(a, b, sign, product, std::make_index_sequence<NumMonomials(A)>());
+}
+
+template <size_t kShift, size_t... kI>
+inline void UnrolledAddShifted(const double* a, double factor, double* __restrict product,
+                               std::index_sequence<kI...>) {
+  ((product[kMonomials.product[kI][kShift]] += factor * a[kI]), ...);
+}
+
+// product += factor a m, where a has degree A <= 4 and m is the monomial kShift, of degree <= 2.
+template <int A, int kShift>
+inline void AddShifted(const double* a, double factor, double* __restrict product) {
+  UnrolledAddShifted<kShift>(a, factor, product, std::make_index_sequence<NumMonomials(A)>());
+}
 
 // Rows are polynomials of degree <= kDegree; columns descend in the order of the monomials.
 template <int kDegree, int kMaxRows>
@@ -114,9 +125,9 @@ class MacaulayMatrix {
 
   // `leading[k]`: how many monomials of degree kDegree - k are leading monomials; all, or else the
   // best conditioned ones are taken. None may be of degree 1 or 0, and at most one of degree
-  // kDegree is left over. False if a pivot vanishes or more than kMaxSize monomials are left.
-  template <int kMaxSize>
-  bool Reduce(const int* leading, int num_degrees, ActionMatrix<kMaxSize>* action) {
+  // kDegree is left over. False if a pivot vanishes or more than kSize monomials are left.
+  template <int kSize>
+  bool Reduce(const int* leading, int num_degrees, ActionMatrix<kSize>* action) {
     int monomial[kColumns];  // of a column
     for (int c = 0; c < kColumns; ++c) monomial[c] = kColumns - 1 - c;
     int pivot_of[kColumns];  // of a monomial; -1: none
@@ -136,13 +147,13 @@ class MacaulayMatrix {
       begin = end;
     }
 
-    int basis[kMaxSize];
-    int basis_column[kMaxSize];
+    int basis[kSize];
+    int basis_column[kSize];
     int basis_of[kColumns];  // of a monomial
     int n = 0;
     for (int m = 0; m < kColumns; ++m) {
       if (pivot_of[m] >= 0) continue;
-      if (n == kMaxSize) return false;
+      if (n == kSize) return false;
       basis_of[m] = n;
       basis[n++] = m;
     }
@@ -162,7 +173,7 @@ class MacaulayMatrix {
     if (top_left) first = 0;
 
     // The leading monomials in terms of the others, from the last pivot back.
-    double reduced[kMaxPivots][kMaxSize];
+    double reduced[kMaxPivots][kSize];
     for (int p = rank - 1; p >= first; --p) {
       const double* row = rows_[p];
       double* out = reduced[p];
@@ -182,7 +193,7 @@ class MacaulayMatrix {
         for (int k = 0; k < n; ++k) out[k] += factor * reduced[pivot_of[m]][k];
       }
     };
-    action->size = n;
+    if (n != kSize) return false;
     for (int b = 0; b < n; ++b) std::fill(action->entries[b], action->entries[b] + n, 0.0);
     for (int b = 0; b < n - (top_left ? 1 : 0); ++b) {
       add(times(basis[b], 1, 0), 1.0, action->entries[b]);
@@ -219,8 +230,8 @@ class MacaulayMatrix {
     for (const int side : {0, 1}) {
       const int s = side == 0 ? s1 : s2;
       const double weight = side == 0 ? bs[s2] / det : -bs[s1] / det;
-      double A[kMaxSize] = {};
-      double B[kMaxSize] = {};
+      double A[kSize] = {};
+      double B[kSize] = {};
       add(times(kFirst + s, 0, 1), 1.0, A);
       add(times(kFirst + s, 1, 0), 1.0, B);
       for (int k = 0; k < n - 1; ++k) {
@@ -273,260 +284,6 @@ class MacaulayMatrix {
   int column_[kMaxRows];  // of a pivot
   double rows_[kMaxRows][kColumns];
 };
-
-// The real solutions that a reduced system has.
-template <int kMaxSize>
-class RealSolutions {
- public:
-  // Destroys `action`.
-  explicit RealSolutions(ActionMatrix<kMaxSize>* action) : a_(action->entries), n_(action->size) {
-    ReduceToHessenberg();
-  }
-
-  // Appends the values of x to the `count` in `x`, up to kMaxSize in all; returns their new number.
-  // The characteristic polynomial is expanded about `centre`, which finds the roots near it best;
-  // only those nearer than 1 if `near_only`. `multiplicity` roots are known to be at the centre and
-  // left out: rounding would spread them, and telling them apart is the costliest part of all.
-  int FindX(double centre, bool near_only, int multiplicity, double* x, int count) const;
-
-  // The root x of the characteristic polynomial by the secant method on the matrix itself, which
-  // knows roots in a cluster better than the coefficients do.
-  double Refine(double x) {
-    double last = x + 1e-7 * (0.01 + std::abs(x));
-    double last_value = Determinant(last);
-    for (int k = 0; k < 4; ++k) {
-      const double value = Determinant(x);
-      const double step = value * (last - x) / (last_value - value);
-      if (!(std::abs(step) < 0.05 * (0.1 + std::abs(x)))) break;
-      last = x;
-      last_value = value;
-      x -= step;
-      if (std::abs(step) < 1e-12 * (0.01 + std::abs(x))) break;
-    }
-    return x;
-  }
-
-  // The solution of the given x, to the accuracy of x.
-  std::array<double, 3> Solution(double x) {
-    EvaluateVector(x);
-    double y = 0.0;
-    double z = 0.0;
-    for (int k = 0; k < n_; ++k) {
-      y += a_[n_][k] * v_[k];
-      z += a_[n_ + 1][k] * v_[k];
-    }
-    return {x, y / v_[0], z / v_[0]};
-  }
-
- private:
-  // H = S^-1 A S by Gaussian elimination with pivoting, its subdiagonal scaled to 1; rows n and
-  // n + 1 become the rows of y and z of S (Wilkinson, "The Algebraic Eigenvalue Problem", ch. 6).
-  void ReduceToHessenberg() {
-    for (int k = 0; k < n_; ++k) {
-      a_[n_][k] = k == 2 ? 1.0 : 0.0;
-      a_[n_ + 1][k] = k == 3 ? 1.0 : 0.0;
-    }
-    double factors[kMaxSize];
-    for (int m = 1; m < n_; ++m) {
-      int pivot = m;
-      for (int i = m + 1; i < n_; ++i) {
-        if (std::abs(a_[i][m - 1]) > std::abs(a_[pivot][m - 1])) pivot = i;
-      }
-      if (pivot != m) {
-        std::swap_ranges(a_[m] + m - 1, a_[m] + n_, a_[pivot] + m - 1);
-        for (int r = 0; r < n_ + 2; ++r) std::swap(a_[r][m], a_[r][pivot]);
-      }
-      // A zero would split the matrix; a tiny number does not move its eigenvalues.
-      if (std::abs(a_[m][m - 1]) < 1e-30) a_[m][m - 1] = 1e-30;
-      const double inv = 1.0 / a_[m][m - 1];
-      for (int i = m + 1; i < n_; ++i) {
-        const double factor = a_[i][m - 1] * inv;
-        factors[i] = factor;
-        if (factor == 0.0) continue;
-        for (int k = m; k < n_; ++k) a_[i][k] -= factor * a_[m][k];
-      }
-      for (int r = 0; r < n_ + 2; ++r) {
-        double sum[4] = {0.0, 0.0, 0.0, 0.0};
-        int i = m + 1;
-        for (; i + 3 < n_; i += 4) {
-          for (int l = 0; l < 4; ++l) sum[l] += factors[i + l] * a_[r][i + l];
-        }
-        for (; i < n_; ++i) sum[0] += factors[i] * a_[r][i];
-        a_[r][m] += (sum[0] + sum[1]) + (sum[2] + sum[3]);
-      }
-    }
-    double scale[kMaxSize];
-    scale[0] = 1.0;
-    for (int k = 1; k < n_; ++k) scale[k] = scale[k - 1] * a_[k][k - 1];
-    for (int r = 0; r < n_ + 2; ++r) {
-      const double inv = r < n_ ? 1.0 / scale[r] : 1.0;
-      for (int k = r < n_ ? r : 0; k < n_; ++k) a_[r][k] *= inv * scale[k];
-    }
-  }
-
-  // Hyman's method: the vector v_ for which all rows of (H - x I) v but the first vanish.
-  void EvaluateVector(double x) {
-    v_[n_ - 1] = 1.0;
-    for (int k = n_ - 1; k > 0; --k) {
-      double sum[4] = {0.0, 0.0, 0.0, 0.0};
-      int j = k;
-      for (; j + 3 < n_; j += 4) {
-        for (int l = 0; l < 4; ++l) sum[l] += a_[k][j + l] * v_[j + l];
-      }
-      for (; j < n_; ++j) sum[0] += a_[k][j] * v_[j];
-      v_[k - 1] = x * v_[k] - ((sum[0] + sum[1]) + (sum[2] + sum[3]));
-    }
-  }
-
-  // det(x I - H).
-  double Determinant(double x) {
-    EvaluateVector(x);
-    double value = x * v_[0];
-    for (int k = 0; k < n_; ++k) value -= a_[0][k] * v_[k];
-    return value;
-  }
-
-  // det((x + centre) I - H): the same recurrence in polynomials, c[0..n] ascending.
-  void CharacteristicPolynomial(double centre, double* c) const {
-    double p[kMaxSize][kMaxSize];
-    p[n_ - 1][0] = 1.0;
-    for (int k = n_ - 1; k >= 0; --k) {
-      double* out = k > 0 ? p[k - 1] : c;
-      out[0] = 0.0;
-      for (int i = 0; i < n_ - k; ++i) out[i + 1] = p[k][i];
-      for (int j = k; j < n_; ++j) {
-        const double h = a_[k][j] - (j == k ? centre : 0.0);
-        for (int i = 0; i < n_ - j; ++i) out[i] -= h * p[j][i];
-      }
-    }
-  }
-
-  double (*a_)[kMaxSize];
-  int n_;
-  double v_[kMaxSize];
-};
-
-// Real roots of the polynomial c of degree n <= kMax by Descartes' rule in the Bernstein basis, as
-// in polynomial.h but with a degree known at run time and to the accuracy that an iteration on the
-// original equations needs, not more.
-template <int kMax>
-class RootFinder {
- public:
-  RootFinder(const double* c, int n) : n_(n) { std::copy(c, c + n + 1, c_); }
-
-  int Find(bool near_only, double* roots) {
-    count_ = 0;
-    double piece[kMax + 1];
-    for (int side = 0; side < (near_only ? 2 : 4); ++side) {
-      const bool reversed = side >= 2;
-      const bool mirrored = side % 2 == 1;
-      for (int k = 0; k <= n_; ++k) {
-        const double value = reversed ? c_[n_ - k] : c_[k];
-        piece[k] = mirrored && k % 2 == 1 ? -value : value;
-      }
-      const int first = count_;
-      UnitInterval(piece, roots);
-      for (int k = first; k < count_; ++k) {
-        const double x = mirrored ? -roots[k] : roots[k];
-        roots[k] = reversed ? 1.0 / x : x;
-      }
-    }
-    return count_;
-  }
-
- private:
-  static double Horner(const double* c, int n, double x) {
-    double value = c[n];
-    for (int k = n - 1; k >= 0; --k) value = value * x + c[k];
-    return value;
-  }
-
-  void UnitInterval(const double* c, double* roots) {
-    struct Piece {
-      double low, width;
-      double b[kMax + 1];
-    };
-    constexpr int kMaxLevel = 24;
-    Piece stack[kMaxLevel + 2];
-    double binomial = 1.0;
-    for (int j = 0; j <= n_; ++j) {
-      stack[0].b[j] = c[j] / binomial;
-      binomial = binomial * (n_ - j) / (j + 1);
-    }
-    for (int j = 1; j <= n_; ++j) {
-      double* b = stack[0].b;
-      for (int k = n_; k >= j; --k) b[k] += b[k - 1];
-    }
-    stack[0].low = 0.0;
-    stack[0].width = 1.0;
-    int top = 0;
-    while (top >= 0 && count_ < kMax) {
-      Piece& piece = stack[top];
-      int variations = 0;
-      for (int k = 0; k < n_; ++k) variations += (piece.b[k] < 0) != (piece.b[k + 1] < 0);
-      if (variations == 0) {
-        --top;
-      } else if (variations == 1) {
-        roots[count_++] = Refine(c, piece.low, piece.b[0], piece.low + piece.width, piece.b[n_]);
-        --top;
-      } else if (top > kMaxLevel) {
-        roots[count_++] = piece.low + 0.5 * piece.width;
-        --top;
-      } else {
-        Piece& right = stack[top + 1];
-        std::copy(piece.b, piece.b + n_ + 1, right.b);
-        for (int k = 0; k < n_; ++k) {
-          piece.b[k] = right.b[0];
-          for (int i = 0; i < n_ - k; ++i) right.b[i] = 0.5 * (right.b[i] + right.b[i + 1]);
-        }
-        piece.b[n_] = right.b[0];
-        piece.width *= 0.5;
-        right.low = piece.low + piece.width;
-        right.width = piece.width;
-        ++top;
-      }
-    }
-  }
-
-  double Refine(const double* c, double a, double fa, double b, double fb) {
-    double x = b;
-    for (int k = 0; k < 40; ++k) {
-      x = (a * fb - b * fa) / (fb - fa);
-      if (!(x > std::min(a, b) && x < std::max(a, b)) || k % 8 == 7) x = 0.5 * (a + b);
-      if (std::abs(b - a) <= 1e-10 * std::abs(x)) break;
-      const double fx = Horner(c, n_, x);
-      if (fx == 0.0 || !std::isfinite(fx)) break;
-      const bool small_step = std::abs(x - b) <= 1e-9 * std::abs(x);
-      if ((fx < 0) != (fb < 0)) {
-        a = b;
-        fa = fb;
-      } else {
-        const double weight = 1.0 - fx / fb;
-        fa *= weight > 0 ? weight : 0.5;
-      }
-      b = x;
-      fb = fx;
-      if (small_step) break;
-    }
-    return x;
-  }
-
-  int n_;
-  int count_ = 0;
-  double c_[kMax + 1];
-};
-
-template <int kMaxSize>
-int RealSolutions<kMaxSize>::FindX(double centre, bool near_only, int multiplicity, double* x,
-                                   int count) const {
-  double c[kMaxSize + 1];
-  double roots[kMaxSize];
-  CharacteristicPolynomial(centre, c);
-  const int num_roots =
-      RootFinder<kMaxSize>(c + multiplicity, n_ - multiplicity).Find(near_only, roots);
-  for (int k = 0; k < num_roots && count < kMaxSize; ++k) x[count++] = roots[k] + centre;
-  return count;
-}
 
 }  // namespace rigel::polynomial_system
 

@@ -27,9 +27,13 @@ namespace rigel {
 // solution.
 inline constexpr double kNoParallax2 = 1e-18;
 
-struct PreparedMatch {
+// The coefficients of n and k.
+struct ConstraintRow {
   double X0, Xc, Xs, Yc, Ys, Z0;
   double K0, Kc, Ks;
+};
+
+struct PreparedMatch : ConstraintRow {
   double x1[3], x2[3];  // p and r: aligned unit directions
   double s1[3], s2[3];  // aligned camera centres, metres
   double parallax2;     // |p x r|^2, squared sine of the angle between the aligned rays

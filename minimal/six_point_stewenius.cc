@@ -1,6 +1,7 @@
 #include "rigel/minimal/six_point_stewenius.h"
 
 #include <algorithm>
+#include <array>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -126,10 +127,10 @@ int RealRotations(const Equations& equations, const int* leading, int num_degree
   double x[kSize];
   int num_roots = roots.FindX(0.0, false, 0, x, 0);
   if (centre != nullptr) num_roots = roots.FindX(*centre, true, 0, x, num_roots);
-  for (int k = 0; k < num_roots; ++k) {
-    const auto solution = roots.Solution(centre != nullptr ? roots.Refine(x[k]) : x[k]);
-    r[k] = {solution[0], solution[1], solution[2]};
-  }
+  if (centre != nullptr) roots.Refine(num_roots, x);
+  std::array<double, 3> solutions[kSize];
+  roots.Solve(num_roots, x, solutions);
+  for (int k = 0; k < num_roots; ++k) r[k] = {solutions[k][0], solutions[k][1], solutions[k][2]};
   return num_roots;
 }
 
@@ -171,17 +172,20 @@ Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& A) {
 
 // Newton's method on the six constraints themselves, from the rotation R.
 void AddPolished(SixPointSystem* system, Eigen::Matrix3d R) {
-  const auto evaluate = [&](const Eigen::Vector4d& v, SixPointSystem::Matrix64* M,
-                            Eigen::Matrix<double, 6, 3>* D) {
+  const auto evaluate = [&](const Eigen::Vector4d& v, double(*M)[4], double(*D)[3]) {
     for (int k = 0; k < 6; ++k) {
       const RayPair& rays = system->rays(k);
       const Eigen::Vector3d g = R * rays.ray1.x;
       const Eigen::Vector3d arm = R * rays.ray1.s;
       const Eigen::Vector3d n = g.cross(rays.ray2.x);
-      M->row(k) << n.transpose(), n.dot(arm - rays.ray2.s);
       // Of b . (g x y), b = t + w (R s_i - s_j), by the left perturbation of R.
       const Eigen::Vector3d b = v.head<3>() + v[3] * (arm - rays.ray2.s);
-      D->row(k) = v[3] * arm.cross(n) + g.cross(rays.ray2.x.cross(b));
+      const Eigen::Vector3d d = v[3] * arm.cross(n) + g.cross(rays.ray2.x.cross(b));
+      for (int c = 0; c < 3; ++c) {
+        M[k][c] = n[c];
+        D[k][c] = d[c];
+      }
+      M[k][3] = n.dot(arm - rays.ray2.s);
     }
   };
   const auto update = [&R](const Eigen::Vector3d& d) { R = ExpSO3(d) * R; };

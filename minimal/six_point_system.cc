@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/QR>
 
@@ -18,6 +19,29 @@ constexpr double kNoMotion = 1e-6;
 // How far rounding moves the multiple root of a pure translation, radians.
 constexpr double kNoRotation = 1e-4;
 constexpr double kDuplicate = 1e-9;
+
+// With partial pivoting; the loops of each column are of constant length.
+template <int kColumn>
+void EliminateColumn(double (*a)[8], double* inv) {
+  int best = kColumn;
+  for (int r = kColumn + 1; r < 6; ++r) {
+    best = std::abs(a[r][kColumn]) > std::abs(a[best][kColumn]) ? r : best;
+  }
+  double top[8];
+  for (int k = 0; k < 8; ++k) top[k] = a[best][k];
+  for (int k = 0; k < 8; ++k) a[best][k] = a[kColumn][k];
+  for (int k = 0; k < 8; ++k) a[kColumn][k] = top[k];
+  inv[kColumn] = 1.0 / top[kColumn];
+  for (int r = kColumn + 1; r < 6; ++r) {
+    const double factor = a[r][kColumn] * inv[kColumn];
+    for (int k = kColumn & ~1; k < 8; ++k) a[r][k] -= factor * top[k];
+  }
+}
+
+template <size_t... kColumns>
+void EliminateColumns(double (*a)[8], double* inv, std::index_sequence<kColumns...>) {
+  (EliminateColumn<kColumns>(a, inv), ...);
+}
 
 }  // namespace
 
@@ -96,17 +120,53 @@ Eigen::Matrix3d SixPointBasis() {
   return B / 7.0;
 }
 
-Eigen::Vector4d NullVector(const SixPointSystem::Matrix64& M) {
-  const Eigen::ColPivHouseholderQR<SixPointSystem::Matrix64> qr(M);
-  const auto& T = qr.matrixQR();
-  Eigen::Vector4d v;
+Eigen::Vector4d NullVector(const double (*M)[4]) {
+  // Elimination with complete pivoting.
+  double T[6][4];
+  int column[4] = {0, 1, 2, 3};
+  std::copy(M[0], M[0] + 24, T[0]);
+  for (int k = 0; k < 3; ++k) {
+    int row = k;
+    int best = k;
+    for (int r = k; r < 6; ++r) {
+      for (int c = k; c < 4; ++c) {
+        if (std::abs(T[r][c]) > std::abs(T[row][best])) {
+          row = r;
+          best = c;
+        }
+      }
+    }
+    if (row != k) std::swap_ranges(T[k], T[k] + 4, T[row]);
+    if (best != k) {
+      for (int r = 0; r < 6; ++r) std::swap(T[r][k], T[r][best]);
+      std::swap(column[k], column[best]);
+    }
+    const double inv = T[k][k] != 0.0 ? 1.0 / T[k][k] : 0.0;
+    for (int r = k + 1; r < 6; ++r) {
+      const double factor = T[r][k] * inv;
+      for (int c = k + 1; c < 4; ++c) T[r][c] -= factor * T[k][c];
+    }
+  }
+  double v[4];
   v[3] = 1.0;
   for (int r = 2; r >= 0; --r) {
     double sum = 0.0;
-    for (int c = r + 1; c < 4; ++c) sum += T(r, c) * v[c];
-    v[r] = T(r, r) != 0.0 ? -sum / T(r, r) : 0.0;
+    for (int c = r + 1; c < 4; ++c) sum += T[r][c] * v[c];
+    v[r] = T[r][r] != 0.0 ? -sum / T[r][r] : 0.0;
   }
-  return qr.colsPermutation() * v;
+  Eigen::Vector4d null;
+  for (int k = 0; k < 4; ++k) null[column[k]] = v[k];
+  return null;
+}
+
+void SolveSixBySix(double (*a)[8], double* x) {
+  double inv[6];
+  EliminateColumns(a, inv, std::make_index_sequence<6>());
+  for (int r = 5; r >= 0; --r) {
+    double value = a[r][6];
+    for (int c = r + 1; c < 6; ++c) value -= a[r][c] * x[c];
+    x[r] = value * inv[r];
+  }
 }
 
 }  // namespace rigel

@@ -7,8 +7,9 @@
 #ifndef RIGEL_MINIMAL_SIX_POINT_SYSTEM_H_
 #define RIGEL_MINIMAL_SIX_POINT_SYSTEM_H_
 
+#include <cmath>
+
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include "rigel/core/rays.h"
 #include "rigel/minimal/prepared_matches.h"
@@ -18,10 +19,6 @@ namespace rigel {
 
 class SixPointSystem {
  public:
-  using Matrix64 = Eigen::Matrix<double, 6, 4>;
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
-
   // Keeps references to the six matches. Adds the pure translation to `solutions` if the sample is
   // one seen by intra-camera matches only: it is a multiple root of every polynomial system.
   SixPointSystem(const PreparedMatches& matches, const int* sample, Solutions* solutions);
@@ -58,40 +55,47 @@ class SixPointSystem {
 // in their first coordinate.
 Eigen::Matrix3d SixPointBasis();
 
-// The null vector of the best rank 3 approximation of M.
-Eigen::Vector4d NullVector(const SixPointSystem::Matrix64& M);
+// The null vector of a rank 3 approximation of M.
+Eigen::Vector4d NullVector(const double (*M)[4]);
+
+// Solves the six equations a[r][0..5] . x = a[r][6] by elimination with partial pivoting, in place;
+// not finite if they are dependent. a[r][7] is padding.
+void SolveSixBySix(double (*a)[8], double* x);
 
 // Newton's method on M(r) v = 0 for six unknowns: r and v, whose largest entry is held. The problem
-// gives evaluate(v, &M, &D): M and the derivative D (6 x 3) of M v by r; and update(dr). v is a
-// result only: it starts at the null vector of M. True if it converged.
+// gives evaluate(v, M, D): M (6 x 4) and the derivative D (6 x 3) of M v by r; and update(dr). v is
+// a result only: it starts at the null vector of M. True if it converged.
 template <class Evaluate, class Update>
 bool PolishSixPoint(const Evaluate& evaluate, const Update& update, Eigen::Vector4d* v) {
   constexpr int kMaxIterations = 10;
   constexpr double kMaxStep = 0.5;
   constexpr double kConverged = 1e-7;  // what is left is of the order of the step squared
-  SixPointSystem::Matrix64 M;
-  Eigen::Matrix<double, 6, 3> D;
-  evaluate(Eigen::Vector4d::Zero(), &M, &D);
+  double M[6][4], D[6][3];
+  evaluate(Eigen::Vector4d::Zero(), M, D);
   *v = NullVector(M);
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     int held = 0;
-    v->cwiseAbs().maxCoeff(&held);
-    *v /= (*v)[held];
-    evaluate(*v, &M, &D);
-    SixPointSystem::Matrix6 J;
-    J.leftCols<3>() = D;
-    for (int c = 0, column = 3; c < 4; ++c) {
-      if (c != held) J.col(column++) = M.col(c);
+    for (int c = 1; c < 4; ++c) held = std::abs((*v)[c]) > std::abs((*v)[held]) ? c : held;
+    *v *= 1.0 / (*v)[held];
+    evaluate(*v, M, D);
+    // The column of the held entry is overwritten by the last one.
+    double J[6][8];
+    for (int m = 0; m < 6; ++m) {
+      for (int c = 0; c < 3; ++c) J[m][c] = D[m][c];
+      for (int c = 0; c < 3; ++c) J[m][3 + c] = M[m][c];
+      if (held < 3) J[m][3 + held] = M[m][3];
+      J[m][6] = (M[m][0] * (*v)[0] + M[m][1] * (*v)[1]) + (M[m][2] * (*v)[2] + M[m][3] * (*v)[3]);
+      J[m][7] = 0.0;
     }
-    const SixPointSystem::Vector6 step = J.partialPivLu().solve(M * *v);
-    const double size = step.norm();
+    double step[6];
+    SolveSixBySix(J, step);
+    const double turn2 = step[0] * step[0] + step[1] * step[1] + step[2] * step[2];
+    const double size2 = turn2 + step[3] * step[3] + step[4] * step[4] + step[5] * step[5];
     // Written so that a NaN ends it.
-    if (!(step.head<3>().squaredNorm() < kMaxStep * kMaxStep)) return false;
-    update(-step.head<3>());
-    for (int c = 0, row = 3; c < 4; ++c) {
-      if (c != held) (*v)[c] -= step[row++];
-    }
-    if (size < kConverged) return true;
+    if (!(turn2 < kMaxStep * kMaxStep)) return false;
+    update(Eigen::Vector3d(-step[0], -step[1], -step[2]));
+    for (int c = 0; c < 3; ++c) (*v)[c == held ? 3 : c] -= step[3 + c];
+    if (size2 < kConverged * kConverged) return true;
   }
   return false;
 }

@@ -1,6 +1,9 @@
 #include "rigel/minimal/six_point_ventura.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
 
 #include <Eigen/Core>
 
@@ -12,11 +15,13 @@ namespace {
 
 using polynomial_system::ActionMatrix;
 using polynomial_system::AddProduct;
+using polynomial_system::AddShifted;
 using polynomial_system::MacaulayMatrix;
 using polynomial_system::NumMonomials;
 using polynomial_system::RealSolutions;
 
 constexpr int kQuadric = NumMonomials(2);
+constexpr int kCubic = NumMonomials(3);
 constexpr int kQuartic = NumMonomials(4);
 
 // The unit of r, radians: the rotations that the model is meant for are below it.
@@ -49,49 +54,125 @@ Row MakeRow(const RayPair& rays, const Eigen::Matrix3d& C) {
   return row;
 }
 
-// The fifteen 4 x 4 minors by Laplace expansion. False if one is zero or not finite.
+// Combines the rows such that column 0 becomes x + a, y + b, z + c, d, 0, 0 (a to d constants),
+// which leaves little to multiply there. Columns 0 to 2 may change places. False if no column
+// allows it: its six linear parts are of rank below 3.
+bool CombineRows(Row* rows) {
+  constexpr double kMinPivot = 1e-6;  // of the largest one
+  const auto subtract = [rows](int from, double factor, int row) {
+    for (int c = 0; c < 4; ++c) {
+      for (int k = 0; k < 4; ++k) rows[row].entry[c][k] -= factor * rows[from].entry[c][k];
+    }
+  };
+  const auto pivot = [rows](int begin, int k) {
+    int best = begin;
+    for (int m = begin + 1; m < 6; ++m) {
+      if (std::abs(rows[m].entry[0][k]) > std::abs(rows[best].entry[0][k])) best = m;
+    }
+    if (best != begin) std::swap(rows[best], rows[begin]);
+    return rows[begin].entry[0][k];
+  };
+  for (int column = 0; column < 3; ++column) {
+    if (column > 0) {
+      for (int m = 0; m < 6; ++m) std::swap(rows[m].entry[0], rows[m].entry[column]);
+    }
+    double largest = 0.0;
+    int rank = 0;
+    for (; rank < 3; ++rank) {
+      const double top = pivot(rank, 1 + rank);
+      largest = std::max(largest, std::abs(top));
+      if (!(std::abs(top) > kMinPivot * largest)) break;
+      const double inv = 1.0 / top;
+      for (auto& entry : rows[rank].entry) {
+        for (double& coefficient : entry) coefficient *= inv;
+      }
+      for (int m = 0; m < 6; ++m) {
+        if (m != rank) subtract(rank, rows[m].entry[0][1 + rank], m);
+      }
+    }
+    if (rank < 3) continue;
+    const double constant = pivot(3, 0);
+    if (constant == 0.0) return true;
+    for (int m = 4; m < 6; ++m) subtract(3, rows[m].entry[0][0] / constant, m);
+    return true;
+  }
+  return false;
+}
+
+// Where the sets of three of six rows, as bits, are kept.
+struct TripleTable {
+  int index[64] = {};
+  constexpr TripleTable() {
+    int count = 0;
+    for (int bits = 0; bits < 64; ++bits) {
+      int size = 0;
+      for (int m = 0; m < 6; ++m) size += bits >> m & 1;
+      if (size == 3) index[bits] = count++;
+    }
+  }
+};
+
+// The fifteen 4 x 4 minors, by Laplace expansion. False if one is zero or not finite.
 bool AddMinors(const Row* rows, MacaulayMatrix<4, 15>* macaulay) {
-  double first[6][6][kQuadric] = {};   // minors of columns 0 and 1
-  double second[6][6][kQuadric] = {};  // of columns 2 and 3
+  constexpr TripleTable kTriples;
+  double pairs[6][6][kQuadric];  // minors of columns 1 and 2
   for (int i = 0; i < 6; ++i) {
     for (int j = i + 1; j < 6; ++j) {
       const auto& a = rows[i].entry;
       const auto& b = rows[j].entry;
-      AddProduct<1, 1>(a[0], b[1], 1.0, first[i][j]);
-      AddProduct<1, 1>(a[1], b[0], -1.0, first[i][j]);
-      AddProduct<1, 1>(a[2], b[3], 1.0, second[i][j]);
-      AddProduct<1, 1>(a[3], b[2], -1.0, second[i][j]);
+      std::fill(pairs[i][j], pairs[i][j] + kQuadric, 0.0);
+      AddProduct<1, 1>(a[1], b[2], 1.0, pairs[i][j]);
+      AddProduct<1, 1>(a[2], b[1], -1.0, pairs[i][j]);
     }
   }
+  double triples[20][kCubic];  // of columns 1 to 3
   for (int i = 0; i < 6; ++i) {
     for (int j = i + 1; j < 6; ++j) {
       for (int k = j + 1; k < 6; ++k) {
-        for (int l = k + 1; l < 6; ++l) {
-          double minor[kQuartic] = {};
-          AddProduct<2, 2>(first[i][j], second[k][l], 1.0, minor);
-          AddProduct<2, 2>(first[i][k], second[j][l], -1.0, minor);
-          AddProduct<2, 2>(first[i][l], second[j][k], 1.0, minor);
-          AddProduct<2, 2>(first[j][k], second[i][l], 1.0, minor);
-          AddProduct<2, 2>(first[j][l], second[i][k], -1.0, minor);
-          AddProduct<2, 2>(first[k][l], second[i][j], 1.0, minor);
-          if (!macaulay->AddMultiples(minor, 4)) return false;
-        }
+        double* out = triples[kTriples.index[1 << i | 1 << j | 1 << k]];
+        std::fill(out, out + kCubic, 0.0);
+        AddProduct<2, 1>(pairs[i][j], rows[k].entry[3], 1.0, out);
+        AddProduct<2, 1>(pairs[i][k], rows[j].entry[3], -1.0, out);
+        AddProduct<2, 1>(pairs[j][k], rows[i].entry[3], 1.0, out);
       }
     }
+  }
+  for (int left = 14; left >= 0; --left) {
+    // All rows but two; (4, 5) last.
+    constexpr int kLeft[15] = {1 << 4 | 1 << 5, 1 << 3 | 1 << 5, 1 << 3 | 1 << 4, 1 << 2 | 1 << 5,
+                               1 << 2 | 1 << 4, 1 << 2 | 1 << 3, 1 << 1 | 1 << 5, 1 << 1 | 1 << 4,
+                               1 << 1 | 1 << 3, 1 << 1 | 1 << 2, 1 << 0 | 1 << 5, 1 << 0 | 1 << 4,
+                               1 << 0 | 1 << 3, 1 << 0 | 1 << 2, 1 << 0 | 1 << 1};
+    const int set = 63 & ~kLeft[left];
+    double minor[kQuartic] = {};
+    double sign = 1.0;
+    for (int m = 0; m < 4; ++m) {
+      if ((set >> m & 1) == 0) continue;
+      const double* triple = triples[kTriples.index[set & ~(1 << m)]];
+      if (m == 0) AddShifted<3, 1>(triple, sign, minor);
+      if (m == 1) AddShifted<3, 2>(triple, sign, minor);
+      if (m == 2) AddShifted<3, 3>(triple, sign, minor);
+      const double constant = sign * rows[m].entry[0][0];
+      for (int n = 0; n < kCubic; ++n) minor[n] += constant * triple[n];
+      sign = -sign;
+    }
+    if (!macaulay->AddMultiples(minor, 4)) return false;
   }
   return true;
 }
 
 // Newton's method on M(r) (t, w)' = 0.
 bool Polish(const Row* rows, Eigen::Vector3d* r, Eigen::Vector4d* v) {
-  const auto evaluate = [&](const Eigen::Vector4d& tw, SixPointSystem::Matrix64* M,
-                            Eigen::Matrix<double, 6, 3>* D) {
-    D->setZero();
+  const auto evaluate = [&](const Eigen::Vector4d& tw, double(*M)[4], double(*D)[3]) {
+    const double x = (*r)[0];
+    const double y = (*r)[1];
+    const double z = (*r)[2];
     for (int m = 0; m < 6; ++m) {
-      for (int c = 0; c < 4; ++c) {
-        const double* e = rows[m].entry[c];
-        (*M)(m, c) = e[0] + e[1] * (*r)[0] + e[2] * (*r)[1] + e[3] * (*r)[2];
-        for (int j = 0; j < 3; ++j) (*D)(m, j) += e[1 + j] * tw[c];
+      const auto& e = rows[m].entry;
+      for (int c = 0; c < 4; ++c) M[m][c] = e[c][0] + e[c][1] * x + e[c][2] * y + e[c][3] * z;
+      for (int j = 0; j < 3; ++j) {
+        D[m][j] = (e[0][1 + j] * tw[0] + e[1][1 + j] * tw[1]) +
+                  (e[2][1 + j] * tw[2] + e[3][1 + j] * tw[3]);
       }
     }
   };
@@ -109,17 +190,21 @@ int Solve6ptVentura(const PreparedMatches& matches, const int* sample, Solutions
   Row rows[6];
   for (int m = 0; m < 6; ++m) rows[m] = MakeRow(system.rays(m), B);
   MacaulayMatrix<4, 15> macaulay;
-  if (!AddMinors(rows, &macaulay)) return 0;
+  Row combined[6];
+  std::copy(rows, rows + 6, combined);
+  if (!CombineRows(combined) || !AddMinors(combined, &macaulay)) return 0;
   constexpr int kLeading[] = {15};
   ActionMatrix<20> action;
   if (!macaulay.Reduce(kLeading, 1, &action)) return 0;
   RealSolutions<20> roots(&action);
   double x[20];
   const int num_roots = roots.FindX(0.0, false, system.zero_motion_multiplicity(), x, 0);
+  // The multiple root of an intra-camera sample blurs those near it.
+  if (system.all_intra()) roots.Refine(num_roots, x);
+  std::array<double, 3> starts[20];
+  roots.Solve(num_roots, x, starts);
   for (int k = 0; k < num_roots; ++k) {
-    // The multiple root of an intra-camera sample blurs those near it.
-    const auto start = roots.Solution(system.all_intra() ? roots.Refine(x[k]) : x[k]);
-    Eigen::Vector3d r(start[0], start[1], start[2]);
+    Eigen::Vector3d r(starts[k][0], starts[k][1], starts[k][2]);
     Eigen::Vector4d v;
     if (!r.allFinite() || !Polish(rows, &r, &v)) continue;
     v.head<3>() = (B.transpose() * v.head<3>()).eval();
