@@ -70,6 +70,7 @@ Drift ComputeDrift(const std::vector<Pose>& truth, const std::vector<Pose>& esti
   drift.step_rotation = ComputeStatistics(rotations);
   drift.end_translation = (estimate.back().t - truth.back().t).norm();
   drift.end_rotation = RotationError(truth.back().R, estimate.back().R);
+  drift.start_translation = (estimate.back().Inverse().t - truth.back().Inverse().t).norm();
   return drift;
 }
 

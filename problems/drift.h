@@ -36,6 +36,8 @@ struct Drift {
   // Of the last pose, the first ones being the same: metres and radians; over the path length the
   // translation's is what the table gives in percent.
   double end_translation = 0.0, end_rotation = 0.0;
+  // Of the first pose seen from the last, X_last = R X_first + t: metres.
+  double start_translation = 0.0;
 };
 
 // Both start at the identity and have the same number of poses, at least two. Where the true path

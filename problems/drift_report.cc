@@ -21,10 +21,10 @@ using Json = nlohmann::ordered_json;
 double Percent(double fraction) { return 100.0 * fraction; }
 double DegPer100m(double radians_per_m) { return 100.0 * RadToDeg(radians_per_m); }
 
-// The part of the path that the end is off; nothing where there is no path.
-std::optional<double> EndPercent(const Drift& drift) {
+// Of the path; nothing where there is none.
+std::optional<double> PercentOfPath(const Drift& drift, double metres) {
   if (!(drift.path_length > 0)) return std::nullopt;
-  return Percent(drift.end_translation / drift.path_length);
+  return Percent(metres / drift.path_length);
 }
 
 Json SegmentJson(const SegmentDrift& s) {
@@ -58,7 +58,11 @@ Json DriftJson(const Drift& drift) {
                   {"rotation_deg", StatisticsJson(*drift.step_rotation, RadToDeg(1.0))}};
   json["end"] = {{"translation_m", drift.end_translation},
                  {"rotation_deg", RadToDeg(drift.end_rotation)}};
-  if (const auto percent = EndPercent(drift)) json["end"]["translation_percent"] = *percent;
+  json["start"] = {{"translation_m", drift.start_translation}};
+  const auto end = PercentOfPath(drift, drift.end_translation);
+  const auto start = PercentOfPath(drift, drift.start_translation);
+  if (end) json["end"]["translation_percent"] = *end;
+  if (start) json["start"]["translation_percent"] = *start;
   return json;
 }
 
@@ -77,9 +81,11 @@ std::string LengthsText(const Drift& drift) {
 std::string DriftTable(const EstimateReport& report) {
   if (!report.trajectories) return "";
   Table table;
-  table.AddHeader({"", "", "path", "", "KITTI", "[deg/", "step RMS", "", "end", ""});
+  table.AddHeader({"", "", "path", "", "KITTI", "[deg/", "step RMS", "", "end", "",
+                   "start"});
   table.AddHeader(
-      {"drift", "pairs", "[m]", "motions", "[%]", "100 m]", "[mm]", "[deg]", "[%]", "[deg]"});
+      {"drift", "pairs", "[m]", "motions", "[%]", "100 m]", "[mm]", "[deg]", "[%]", "[deg]",
+                   "[%]"});
   std::map<std::string, std::vector<size_t>> remarks;  // and the trajectories they are of
   for (size_t k = 0; k < report.trajectories->size(); ++k) {
     const Trajectory& trajectory = (*report.trajectories)[k];
@@ -98,8 +104,9 @@ std::string DriftTable(const EstimateReport& report) {
                     some(Percent(drift.all.translation)), some(DegPer100m(drift.all.rotation)),
                     FormatFitted(1e3 * drift.step_translation->rms, 2, 7),
                     FormatFitted(RadToDeg(drift.step_rotation->rms), 4, 7),
-                    FormatFitted(EndPercent(drift), 3, 7),
-                    FormatFitted(RadToDeg(drift.end_rotation), 3, 7)});
+                    FormatFitted(PercentOfPath(drift, drift.end_translation), 3, 7),
+                    FormatFitted(RadToDeg(drift.end_rotation), 3, 7),
+                    FormatFitted(PercentOfPath(drift, drift.start_translation), 3, 7)});
       return drift;
     };
     const Drift drift = add("raw", trajectory.raw);

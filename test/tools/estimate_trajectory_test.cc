@@ -137,6 +137,8 @@ TEST_F(EstimateTrajectoryTest, FilesHoldTheDriveAndAgree) {
   EXPECT_NEAR(entry["path_m"].get<double>(), 30.0, 0.1);
   EXPECT_NEAR(entry["refined"]["end"]["translation_m"].get<double>(),
               (kitti.back().t - driven.back().t).norm(), 1e-8);
+  EXPECT_NEAR(entry["refined"]["start"]["translation_m"].get<double>(),
+              (kitti.back().Inverse().t - driven.back().Inverse().t).norm(), 1e-8);
   EXPECT_LT(entry["refined"]["kitti"]["translation_percent"],
             entry["raw"]["kitti"]["translation_percent"]);
   EXPECT_EQ(entry["refined"]["kitti"]["by_length"][1]["length_m"], 20);
