@@ -158,4 +158,24 @@ std::map<std::string, std::string> GravityLines(const GravityCalibration& gravit
   return lines;
 }
 
+std::string CalibrationMark(const std::string& line) { return "# rigel_calibrate_prior " + line; }
+
+std::map<std::string, std::string> MarkLines(const CalibrationReport& report, bool normal,
+                                             bool axis) {
+  std::map<std::string, std::string> lines;
+  const auto mark = [&](const std::string& line, double turn_deg) {
+    const std::string words = CalibrationMark(line);
+    lines[words] = words + " turned by " + FormatNumber(turn_deg, 6) + " deg";
+  };
+  if (report.plane && report.plane->level != CalibrationLevel::kNone) {
+    const double turn_deg = AngleDeg(report.plane->normal, report.start);
+    if (normal) mark("normal", turn_deg);
+    if (axis) mark("axis", turn_deg);
+  }
+  if (report.gravity && report.gravity->level != CalibrationLevel::kNone) {
+    mark("gravity", TurnDeg(report.gravity->C));
+  }
+  return lines;
+}
+
 }  // namespace rigel

@@ -35,6 +35,14 @@ std::map<std::string, std::string> PlaneLines(const PlaneCalibration& plane, boo
 std::map<std::string, std::string> GravityLines(const GravityCalibration& gravity,
                                                 const MotionPrior& stated);
 
+// How the comment line begins that tells a file whose `line` (normal, axis, gravity) is calibrated.
+// Files calibrated and not look alike otherwise, and gravity must not be turned twice.
+std::string CalibrationMark(const std::string& line);
+
+// Those comment lines by their beginnings, for ReplaceHeaderLines(): of what is determined.
+std::map<std::string, std::string> MarkLines(const CalibrationReport& report, bool normal,
+                                             bool axis);
+
 }  // namespace rigel
 
 #endif  // RIGEL_PROBLEMS_CALIBRATION_REPORT_H_

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rigel/problems/csv.h"
+#include "rigel/problems/json_message.h"
 #include "rigel/problems/summary_json.h"
 #include "rigel/problems/table.h"
 
@@ -252,7 +253,11 @@ bool ParsePointLine(const std::string& line, ExperimentPoint* point,
     *rows = std::move(parsed_rows);
     return true;
   } catch (const std::exception& e) {
-    *error = e.what();
+    *error = JsonMessage(e);
+    // Its line is always the first of this text; who calls knows that of the file.
+    const std::string first_line = " at line 1, column ";
+    const size_t place = error->find(first_line);
+    if (place != std::string::npos) error->replace(place, first_line.size(), " at column ");
     return false;
   }
 }

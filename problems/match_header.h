@@ -8,15 +8,19 @@
 namespace rigel {
 
 // Takes the lines of these keywords out of the header of a match file's text and puts those given
-// (without a line break; none if empty) before its `matches` line.
+// (without a line break; none if empty) before its `matches` line. A keyword that begins with "#"
+// stands for the comment lines that begin with its words.
 std::string ReplaceHeaderLines(const std::string& text,
                                const std::map<std::string, std::string>& lines);
 
-// Reads the match file `from` and writes it with those lines to `to`, which may be the same: a
-// reader finds the old file there or the new one, never half a file. False with a message if one of
-// them is no match file, or if reading or writing fails; `to` is then as it was.
-bool RewriteMatchFile(const std::string& from, const std::map<std::string, std::string>& lines,
-                      const std::string& to, std::string* error);
+// *text is that of the match file `path` with those lines. False with a message if it cannot be
+// read, or if it is no match file, before or with them.
+bool ReadWithHeaderLines(const std::string& path, const std::map<std::string, std::string>& lines,
+                         std::string* text, std::string* error);
+
+// The first comment line in the header of the file that begins with these words; empty if there is
+// none, or no such file.
+std::string FindHeaderComment(const std::string& path, const std::string& words);
 
 }  // namespace rigel
 

@@ -231,4 +231,19 @@ std::string SequenceTables(const std::vector<SolverSummary>& summaries) {
   return text;
 }
 
+std::string BestInBold(const std::string& tables) {
+  constexpr char kFigure[] = "0123456789.e-";
+  std::string bold;
+  for (const char c : tables) {
+    if (c == '*') {
+      const size_t last = bold.find_last_not_of(kFigure);
+      const size_t begin = last == std::string::npos ? 0 : last + 1;
+      // Not the asterisk of the legend.
+      if (begin < bold.size()) bold.insert(begin, "\033[1m").append("\033[0m");
+    }
+    bold += c;
+  }
+  return bold;
+}
+
 }  // namespace rigel

@@ -16,6 +16,9 @@ namespace rigel {
 // many solvers are split so that none has more than 100 columns.
 std::string SequenceTables(const std::vector<SolverSummary>& summaries);
 
+// The same text for a terminal: figures with an asterisk in bold, nothing else changed.
+std::string BestInBold(const std::string& tables);
+
 }  // namespace rigel
 
 #endif  // RIGEL_PROBLEMS_SEQUENCE_TABLES_H_

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rigel/core/angles.h"
+#include "rigel/problems/json_message.h"
 #include "rigel/problems/match_file.h"
 
 namespace rigel {
@@ -127,6 +128,19 @@ ComparisonReport Report(std::string_view text) {
   return report;
 }
 
+// The line of the number that no double holds, 0 if it is another error: of those of syntax the
+// library tells the line, of this only the number.
+int LineOfOverflow(std::string_view text, const std::exception& exception) {
+  const std::string message = exception.what();
+  const std::string what = "number overflow parsing '";
+  const size_t begin = message.find(what);
+  if (begin == std::string::npos) return 0;
+  std::string number = message.substr(begin + what.size());
+  number.erase(std::min(number.rfind('\''), number.size()));
+  const size_t place = std::min(text.find(number), text.size());
+  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + place, '\n'));
+}
+
 std::string ShardText(const Shard& shard) {
   return std::to_string(shard.index) + "/" + std::to_string(shard.count);
 }
@@ -163,7 +177,9 @@ bool ParseShardReport(std::string_view text, const std::string& name, Comparison
     *report = Report(text);
     return true;
   } catch (const std::exception& e) {
-    *error = PrintablePath(name + ": not a report that can be merged: " + e.what());
+    const int line = LineOfOverflow(text, e);
+    *error = PrintablePath(name + (line > 0 ? ":" + std::to_string(line) : "") +
+                           ": not a report that can be merged: " + JsonMessage(e));
     return false;
   }
 }

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <system_error>
 
 #include "rigel/problems/match_file.h"
@@ -21,17 +22,40 @@ std::FILE* CreateTemporary(const std::string& path, std::string* temporary) {
   return nullptr;
 }
 
+std::string CannotBeWritten(const std::string& path, const std::string& why) {
+  return PrintablePath(path) + ": cannot be written: " + why;
+}
+
+std::string NoTemporary(const std::string& path, int error_number) {
+  const std::filesystem::path directory = std::filesystem::path(path).parent_path();
+  std::error_code ignored;
+  if (error_number == ENOENT && !directory.empty() &&
+      !std::filesystem::exists(directory, ignored)) {
+    return CannotBeWritten(
+        path, "the directory " + PrintablePath(directory.string()) + " does not exist");
+  }
+  return CannotBeWritten(
+      path, "no temporary file beside it: " + std::generic_category().message(error_number));
+}
+
 }  // namespace
 
 bool WriteWholeFile(const std::string& path, const std::string& text, std::string* error) {
-  const auto fail = [&](const char* what, int error_number) {
-    *error = PrintablePath(path) + ": cannot be written: " + what + ": " +
-             std::generic_category().message(error_number);
-    return false;
-  };
+  StagedFiles file;
+  return file.Add(path, text, error) && file.Commit(error);
+}
+
+StagedFiles::~StagedFiles() {
+  for (size_t k = committed_; k < files_.size(); ++k) std::remove(files_[k].first.c_str());
+}
+
+bool StagedFiles::Add(const std::string& path, const std::string& text, std::string* error) {
   std::string temporary;
   std::FILE* const file = CreateTemporary(path, &temporary);
-  if (file == nullptr) return fail("no temporary file beside it", errno);
+  if (file == nullptr) {
+    *error = NoTemporary(path, errno);
+    return false;
+  }
   const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
   int error_number = errno;
   // A full disk may show only now, when the buffer is flushed.
@@ -39,12 +63,23 @@ bool WriteWholeFile(const std::string& path, const std::string& text, std::strin
   if (written && !closed) error_number = errno;
   if (!written || !closed) {
     std::remove(temporary.c_str());
-    return fail("the disk or the device refused it", error_number);
+    *error = CannotBeWritten(path, "the disk or the device refused it: " +
+                                       std::generic_category().message(error_number));
+    return false;
   }
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
-    error_number = errno;
-    std::remove(temporary.c_str());
-    return fail("the temporary file cannot take its place", error_number);
+  files_.emplace_back(temporary, path);
+  return true;
+}
+
+bool StagedFiles::Commit(std::string* error) {
+  while (committed_ < static_cast<int>(files_.size())) {
+    const auto& [temporary, path] = files_[committed_];
+    if (std::rename(temporary.c_str(), path.c_str()) != 0) {
+      *error = CannotBeWritten(path, "the temporary file cannot take its place: " +
+                                         std::generic_category().message(errno));
+      return false;
+    }
+    ++committed_;
   }
   return true;
 }

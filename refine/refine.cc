@@ -194,7 +194,7 @@ class Refiner {
     double sigma = 0.0;
   };
   mutable ScaleQuestion last_scale_;  // see ScaleSigma()
-  int reference_match_ = -1;  // of the depth forms, grouped order
+  int reference_match_ = -1;          // of the depth forms, grouped order
   RefineSummary summary_;
 };
 
@@ -495,9 +495,9 @@ bool Refiner::SolveCeres(const MotionParameterization& parameterization,
   return true;
 }
 
-// EpipoleWeights of the inliers and those by the noise of their camera pairs, fixed for a round: as a
-// function of the motion they would draw the epipoles to the matches. True if they changed by more
-// than a tenth.
+// EpipoleWeights of the inliers and those by the noise of their camera pairs, fixed for a round: as
+// a function of the motion they would draw the epipoles to the matches. True if they changed by
+// more than a tenth.
 bool Refiner::SetWeights(const Pose& pose) {
   const std::vector<double> previous = weights_;
   const bool algebraic =

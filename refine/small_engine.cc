@@ -20,9 +20,8 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 class ParameterEquations {
  public:
   ParameterEquations(const SmallEngineOptions& options, const GroupedMatches& matches,
-                  const MotionParameterization& parameterization,
-                  const PackedMatches& packed, const PriorResiduals& prior,
-                  double prior_unit)
+                     const MotionParameterization& parameterization, const PackedMatches& packed,
+                     const PriorResiduals& prior, double prior_unit)
       : matches_(matches),
         parameterization_(parameterization),
         packed_(packed),
@@ -111,8 +110,8 @@ void PackedMatches::Set(const GroupedMatches& matches, const std::vector<double>
       weights[n] = w[k];
       n += w[k] != 0.0 ? 1 : 0;
     }
-    groups.push_back({x1.data() + begin, y1.data() + begin, x2.data() + begin, y2.data() + begin,
-                      n - begin});
+    groups.push_back(
+        {x1.data() + begin, y1.data() + begin, x2.data() + begin, y2.data() + begin, n - begin});
   }
 }
 

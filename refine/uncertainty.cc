@@ -113,7 +113,8 @@ Matrix6d ReliableInformation(const GroupedMatches& matches,
   }
   for (size_t g = 0; g < information.size(); ++g) {
     if (!(baseline[g] < kShortBaseline * longest)) continue;
-    if (!(MedianParallaxPx(matches, matches.groups()[g], match_weights, pose) < kParallaxNoise * noise_px)) {
+    if (!(MedianParallaxPx(matches, matches.groups()[g], match_weights, pose) <
+          kParallaxNoise * noise_px)) {
       continue;
     }
     Matrix6d others;

@@ -52,7 +52,7 @@ PlotOutcome RunPlotScript(const std::vector<std::string>& arguments, std::string
     *error = std::string("no figures: python3 cannot be run: ") + std::strerror(failure);
     return PlotOutcome::kUnavailable;
   }
-  int status = 0;
+  int status = -1;  // no exit of the child, should waitpid() fail
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return PlotOutcome::kDone;

@@ -13,6 +13,7 @@
 #include "rigel/problems/calibration_report.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/match_header.h"
+#include "rigel/problems/whole_file.h"
 #include "rigel/refine/solver_choice.h"
 #include "rigel/tools/estimation_flags.h"
 #include "rigel/tools/tool.h"
@@ -24,7 +25,7 @@ DEFINE_string(lines, "normal",
               "gravity to the body)");
 DEFINE_string(output, "",
               "write copies of the match files with the calibrated lines to this directory, made "
-              "if missing");
+              "if missing; one with match files other than those of an earlier run is refused");
 DEFINE_bool(in_place, false, "write the calibrated lines into the match files themselves");
 DEFINE_string(json, "",
               "write the calibration (format rigel-prior-calibration 1) to this file; - is stdout");
@@ -42,8 +43,10 @@ constexpr char kUsage[] =
     "plane that it moves in, starting from the files' normal or the body's Y, and the rotation\n"
     "that turns the stated gravity into the body frame. What the motions do not determine is said\n"
     "and left as it was: a drive straight ahead says nothing of the plane's roll, and without\n"
-    "turns nothing of the IMU's mounting. Files are replaced whole, one after the other, their\n"
-    "other lines and comments untouched.\n";
+    "turns nothing of the IMU's mounting. Files are replaced whole, all new ones written before "
+    "the\n"
+    "first takes its place, their other lines and comments untouched. A comment line tells the\n"
+    "calibrated ones; input of which only a part is calibrated is refused.\n";
 
 struct Lines {
   bool normal = false;
@@ -66,16 +69,60 @@ bool ParseLines(const std::string& text, Lines* lines) {
   return !names.empty();
 }
 
-// Where each file is written to; empty with a message if two would be one, or one its own source.
+// The lines that are calibrated.
+std::vector<std::string> Names(const Lines& lines) {
+  std::vector<std::string> names;
+  if (lines.normal) names.push_back("normal");
+  if (lines.axis) names.push_back("axis");
+  if (lines.gravity) names.push_back("gravity");
+  return names;
+}
+
+// Whether all files were calibrated by the same run, or none. An interrupted run leaves a part, and
+// with it no calibration would be that of all.
+bool SameMarks(const std::vector<std::string>& paths, const std::string& line, std::string* error) {
+  std::set<std::string> marks;
+  size_t marked = 0;
+  for (const std::string& path : paths) {
+    const std::string mark = FindHeaderComment(path, CalibrationMark(line));
+    if (mark.empty()) continue;
+    marks.insert(mark);
+    ++marked;
+  }
+  if (marked == 0 || (marked == paths.size() && marks.size() == 1)) return true;
+  const std::string what =
+      marked < paths.size()
+          ? std::to_string(marked) + " of " + std::to_string(paths.size()) +
+                " files are calibrated already, the others are not"
+          : "the files were calibrated by " + std::to_string(marks.size()) + " different runs";
+  *error = "--lines=" + line + ": " + what + " (line '" + CalibrationMark(line) +
+           "'), as an interrupted run leaves them; begin again with the files as they were before";
+  return false;
+}
+
+// Match files in --output that this run does not overwrite, or that are not the program's own
+// work. In byte order.
+std::set<std::string> OtherMatchFiles(const std::set<std::string>& targets, std::error_code* code) {
+  namespace fs = std::filesystem;
+  std::set<std::string> others;
+  fs::directory_iterator entry(FLAGS_output, *code);
+  for (; !*code && entry != fs::directory_iterator(); entry.increment(*code)) {
+    const std::string path = entry->path().string();
+    std::error_code ignored;
+    if (entry->path().extension() != ".matches" || entry->is_directory(ignored)) continue;
+    const bool own = targets.count((fs::path(FLAGS_output) / entry->path().filename()).string()) &&
+                     !FindHeaderComment(path, "# rigel_calibrate_prior").empty();
+    if (!own) others.insert(entry->path().filename().string());
+  }
+  return others;
+}
+
+// Where each file is written to; empty with a message if two would be one, one its own source, or
+// the files of --output not all of this run.
 std::vector<std::string> Targets(const std::vector<std::string>& paths, std::string* error) {
   namespace fs = std::filesystem;
   if (FLAGS_in_place) return paths;
   std::error_code code;
-  fs::create_directories(FLAGS_output, code);
-  if (code) {
-    *error = PrintablePath(FLAGS_output) + ": cannot be made: " + code.message();
-    return {};
-  }
   std::vector<std::string> targets;
   std::set<std::string> seen;
   for (const std::string& path : paths) {
@@ -90,7 +137,33 @@ std::vector<std::string> Targets(const std::vector<std::string>& paths, std::str
       return {};
     }
   }
+  if (!fs::is_directory(FLAGS_output, code)) return targets;
+  code.clear();
+  const std::set<std::string> others = OtherMatchFiles(seen, &code);
+  if (code) {
+    *error = PrintablePath(FLAGS_output) + ": cannot be listed: " + code.message();
+    return {};
+  }
+  if (!others.empty()) {
+    *error = PrintablePath(FLAGS_output) + ": holds " + PrintablePath(*others.begin()) +
+             (others.size() > 1 ? " and " + std::to_string(others.size() - 1) + " more" : "") +
+             ", which this run does not overwrite and which would be read as if it were of this "
+             "run; empty the directory or name another";
+    return {};
+  }
   return targets;
+}
+
+// Whether the cameras are the same but for where they sit, which rigel_simulate draws anew for each
+// pair.
+bool SameCameras(const Rig& a, const Rig& b) {
+  return std::equal(a.cameras.begin(), a.cameras.end(), b.cameras.begin(), b.cameras.end(),
+                    [](const RigCamera& camera1, const RigCamera& camera2) {
+                      const PinholeCamera& c1 = camera1.intrinsics;
+                      const PinholeCamera& c2 = camera2.intrinsics;
+                      return c1.fx == c2.fx && c1.fy == c2.fy && c1.cx == c2.cx && c1.cy == c2.cy &&
+                             c1.width == c2.width && c1.height == c2.height;
+                    });
 }
 
 // The body's Y unless all files state the same normal.
@@ -112,14 +185,28 @@ bool WriteFiles(const CalibrationReport& report, const Lines& lines,
     std::cerr << error << "\n";
     return false;
   }
+  std::error_code code;
+  if (!FLAGS_in_place) std::filesystem::create_directories(FLAGS_output, code);
+  if (code) {
+    std::cerr << PrintablePath(FLAGS_output) << ": cannot be made: " << code.message() << "\n";
+    return false;
+  }
+  StagedFiles files;
   for (size_t k = 0; k < pairs.size(); ++k) {
-    std::map<std::string, std::string> changed;
-    if (report.plane) changed = PlaneLines(*report.plane, lines.normal, lines.axis);
+    std::map<std::string, std::string> changed = MarkLines(report, lines.normal, lines.axis);
+    if (report.plane) changed.merge(PlaneLines(*report.plane, lines.normal, lines.axis));
     if (report.gravity) changed.merge(GravityLines(*report.gravity, pairs[k].prior));
-    if (!RewriteMatchFile(paths[k], changed, targets[k], &error)) {
-      std::cerr << error << "; " << k << " of " << pairs.size() << " files are written\n";
+    std::string text;
+    if (!ReadWithHeaderLines(paths[k], changed, &text, &error) ||
+        !files.Add(targets[k], text, &error)) {
+      std::cerr << error << "; no file is written\n";
       return false;
     }
+  }
+  if (!files.Commit(&error)) {
+    std::cerr << error << "; " << files.committed() << " of " << pairs.size()
+              << " files are written\n";
+    return false;
   }
   std::cerr << "wrote " << pairs.size() << (pairs.size() == 1 ? " match file" : " match files")
             << (FLAGS_in_place ? " in place" : " to " + PrintablePath(FLAGS_output)) << "\n";
@@ -159,15 +246,30 @@ int Run() {
   const InputFiles input = ListInput();
   if (input.total == 0) return kExitFailed;
   bool ok = input.all_there;
-  const std::function<CalibrationMotion(const FramePair&)> work = [&](const FramePair& pair) {
+  // What would be refused at the end is refused before the work.
+  for (const std::string& line : Names(lines)) {
+    if (SameMarks(input.paths, line, &error)) continue;
+    std::cerr << error << "\n";
+    return kExitFailed;
+  }
+  if (writes && Targets(input.paths, &error).empty()) {
+    std::cerr << error << "\n";
+    return kExitFailed;
+  }
+  struct Estimated {
+    CalibrationMotion motion;
+    Rig rig;
+  };
+  const std::function<Estimated(const FramePair&)> work = [&](const FramePair& pair) {
     EstimateOptions pair_options = estimate;
     if (options.use_stated_noise && pair.noise_px) pair_options.refine.noise_px = pair.noise_px;
     const MotionEstimate e = EstimateMotion(pair_options, pair);
     const bool refined = e.status == EstimateStatus::kSuccess && e.refine.IsSolutionUsable();
-    return CalibrationMotion{e.pose, refined && e.refine.rotation_observable,
-                             refined && e.refine.translation_observable, pair.prior};
+    return Estimated{{e.pose, refined && e.refine.rotation_observable,
+                      refined && e.refine.translation_observable, pair.prior},
+                     pair.rig};
   };
-  std::vector<BatchItem<CalibrationMotion>> items;
+  std::vector<BatchItem<Estimated>> items;
   {
     Progress progress("rigel_calibrate_prior", static_cast<int>(input.paths.size()));
     items = RunBatch(options, input.paths, input.first, work, [&] { progress.Step(); });
@@ -175,15 +277,23 @@ int Run() {
   std::vector<FramePair> pairs;
   std::vector<CalibrationMotion> motions;
   CalibrationReport report;
-  for (BatchItem<CalibrationMotion>& item : items) {
+  Rig rig;  // of the first pair
+  for (BatchItem<Estimated>& item : items) {
     if (!item.error.empty()) {
       std::cerr << PrintablePath(item.error) << "\n";
       ok = false;
       continue;
     }
+    if (pairs.empty()) rig = item.result.rig;
+    if (!SameCameras(rig, item.result.rig)) {
+      std::cerr << "a calibration is of one vehicle: cameras differ between "
+                << PrintablePath(pairs.front().name) << " and " << PrintablePath(item.pair.name)
+                << "\n";
+      return kExitFailed;
+    }
     pairs.push_back(std::move(item.pair));
-    motions.push_back(item.result);
-    report.estimated += item.result.has_rotation ? 1 : 0;
+    motions.push_back(item.result.motion);
+    report.estimated += item.result.motion.has_rotation ? 1 : 0;
   }
   if (pairs.empty()) return kExitFailed;
   report.pairs = static_cast<int>(pairs.size());
@@ -201,6 +311,12 @@ int Run() {
   }
   if (!FLAGS_json.empty()) ok = WriteOutput(FLAGS_json, CalibrationJson(report)) && ok;
   if (!writes) return ok ? kExitDone : kExitFailed;
+  if (FLAGS_in_place && (pairs.size() < items.size() || !input.all_there)) {
+    // The part that is calibrated would no longer be of one kind with the rest.
+    std::cerr << "nothing is written: --in_place needs all of the files, "
+              << items.size() - pairs.size() << " of " << items.size() << " cannot be used\n";
+    return kExitFailed;
+  }
   const bool any = (report.plane && report.plane->level != CalibrationLevel::kNone) ||
                    (report.gravity && report.gravity->level != CalibrationLevel::kNone);
   if (!any) {

@@ -1,4 +1,6 @@
 // rigel_compare: accuracy of raw and refined motions against the truth of match files.
+#include <unistd.h>
+
 #include <algorithm>
 #include <iostream>
 #include <utility>
@@ -8,6 +10,7 @@
 #include "rigel/problems/batch.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/report.h"
+#include "rigel/problems/sequence_tables.h"
 #include "rigel/problems/shard_report.h"
 #include "rigel/refine/solver_choice.h"
 #include "rigel/tools/estimation_flags.h"
@@ -70,7 +73,9 @@ bool Write(ComparisonReport* report, bool by_sequence) {
   bool ok = true;
   // stdout belongs to the machine if it asked for it.
   if (FLAGS_json != "-" && FLAGS_csv != "-") {
-    std::cout << ComparisonTable(summaries);
+    const std::string table = ComparisonTable(summaries);
+    const bool bold = by_sequence && isatty(STDOUT_FILENO) != 0;
+    std::cout << (bold ? BestInBold(table) : table);
     ok = FlushStdout();
   }
   const bool per_pair = FLAGS_per_pair || report->shard.has_value();
@@ -112,6 +117,10 @@ int Merge() {
 }
 
 int Run() {
+  if (SameOutputFile(FLAGS_json, FLAGS_csv)) {
+    return UsageError("--csv=" + FLAGS_csv +
+                      ": the JSON goes to this file already; name another for one of them");
+  }
   if (FLAGS_json == "-" && FLAGS_csv == "-") {
     return UsageError("--csv=-: stdout has the JSON already; name a file for one of them");
   }

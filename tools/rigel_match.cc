@@ -100,6 +100,11 @@ int Run() {
     return kExitFailed;
   }
   for (const std::string& note : sequence.notes) std::cerr << note << "\n";
+  if (std::none_of(sequence.frames.begin(), sequence.frames.end(),
+                   [](const ImageFrame& frame) { return frame.world_from_body.has_value(); })) {
+    std::cerr << "sequence " << PrintablePath(sequence.name)
+              << " has no ground truth: the files get no truth and no gravity\n";
+  }
 
   std::unique_ptr<Progress> progress;
   SequenceMatchingSummary summary;
@@ -112,13 +117,21 @@ int Run() {
     std::cerr << error << "\n";
     return kExitFailed;
   }
+  for (const std::string& note : summary.notes) std::cerr << note << "\n";
+  // A range of which the images are not there is told shortly.
+  constexpr size_t kMaxMissing = 5;
+  const size_t shown = std::min(summary.missing.size(), kMaxMissing);
+  for (size_t k = 0; k < shown; ++k) std::cerr << summary.missing[k] << "\n";
+  if (summary.missing.size() > shown) {
+    std::cerr << "and " << summary.missing.size() - shown << " more images that cannot be opened\n";
+  }
   for (const std::string& message : summary.errors) std::cerr << message << "\n";
   const int failed = summary.num_pairs - summary.written - summary.kept;
   std::cerr << "wrote " << summary.written << " match files to " << PrintablePath(FLAGS_output);
   if (summary.kept > 0) std::cerr << ", kept " << summary.kept;
   if (failed > 0) std::cerr << "; " << failed << " could not be made";
   std::cerr << "\n";
-  return summary.errors.empty() ? kExitDone : kExitFailed;
+  return summary.errors.empty() && summary.missing.empty() ? kExitDone : kExitFailed;
 }
 
 }  // namespace

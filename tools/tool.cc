@@ -7,7 +7,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
+#include <system_error>
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
@@ -158,6 +160,17 @@ bool WriteOutput(const std::string& path, const std::string& text) {
   ok = std::fclose(file) == 0 && ok;
   if (!ok) std::cerr << path << ": cannot be written: " << std::strerror(errno) << "\n";
   return ok;
+}
+
+bool SameOutputFile(const std::string& path1, const std::string& path2) {
+  namespace fs = std::filesystem;
+  if (path1.empty() || path2.empty() || path1 == "-" || path2 == "-") return false;
+  std::error_code ignored;
+  if (fs::exists(path1, ignored) && !fs::is_regular_file(path1, ignored)) return false;
+  if (path1 == path2) return true;
+  const fs::path real1 = fs::weakly_canonical(fs::absolute(path1, ignored), ignored);
+  const fs::path real2 = fs::weakly_canonical(fs::absolute(path2, ignored), ignored);
+  return !real1.empty() && real1 == real2;
 }
 
 bool ReadInput(const std::string& path, std::string* text) {

@@ -39,6 +39,10 @@ bool FlushStdout();
 // stderr if that fails.
 bool WriteOutput(const std::string& path, const std::string& text);
 
+// Whether two outputs would be one file, which the second would overwrite. Stdout and devices are
+// none.
+bool SameOutputFile(const std::string& path1, const std::string& path2);
+
 // Reads a whole file. False with a message on stderr if that fails.
 bool ReadInput(const std::string& path, std::string* text);
 

@@ -1,12 +1,10 @@
 #include "rigel/problems/images/sequence_matching.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
+#include <initializer_list>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -17,6 +15,7 @@
 #include "rigel/problems/images/text_lines.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/parallel.h"
+#include "rigel/problems/whole_file.h"
 
 namespace rigel {
 namespace {
@@ -36,6 +35,11 @@ struct FrameIndices {
   }
 };
 
+bool Exists(const std::string& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
 bool EndsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
@@ -50,16 +54,16 @@ class FrameFeatures {
   std::shared_ptr<const std::vector<ImageFeatures>> Get(const FeatureOptions& options,
                                                         const ImageSequence& sequence, int frame) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (features_ != nullptr || !errors_.empty()) return features_;
+    if (features_ != nullptr || !missing_.empty() || !errors_.empty()) return features_;
     auto features = std::make_shared<std::vector<ImageFeatures>>(sequence.cameras.size());
     for (size_t k = 0; k < sequence.cameras.size(); ++k) {
       std::string error;
-      if (!ExtractFeatures(options, sequence.cameras[k], sequence.frames[frame].images[k],
-                           &(*features)[k], &error)) {
-        errors_.push_back(error);
+      const std::string& image = sequence.frames[frame].images[k];
+      if (!ExtractFeatures(options, sequence.cameras[k], image, &(*features)[k], &error)) {
+        (Exists(image) ? errors_ : missing_).push_back(error);
       }
     }
-    if (errors_.empty()) features_ = std::move(features);
+    if (missing_.empty() && errors_.empty()) features_ = std::move(features);
     return features_;
   }
 
@@ -68,13 +72,14 @@ class FrameFeatures {
     if (--uses_ == 0) features_ = nullptr;
   }
 
+  const std::vector<std::string>& missing() const { return missing_; }
   const std::vector<std::string>& errors() const { return errors_; }
 
  private:
   std::mutex mutex_;
   int uses_ = 0;
   std::shared_ptr<const std::vector<ImageFeatures>> features_;
-  std::vector<std::string> errors_;
+  std::vector<std::string> missing_, errors_;
 };
 
 // All of a pair but its matches and the sizes of the images.
@@ -115,24 +120,43 @@ bool AddMatches(const FeatureOptions& options, const std::vector<ImageFeatures>&
   return true;
 }
 
-// What the files of a directory must agree in.
-std::string SettingsText(const SequenceMatchingOptions& options, const ImageSequence& sequence) {
-  return "sequence " + sequence.name + "\nstride " + std::to_string(options.stride) +
-         "\nfeatures " + FeatureTypeName(options.features.type) + "\nmax_features " +
-         std::to_string(options.features.max_features) + "\nratio " +
-         CsvNumber(options.features.ratio) + "\n";
+std::string NumbersText(std::initializer_list<double> numbers) {
+  std::string text;
+  for (const double number : numbers) text += " " + CsvNumber(number);
+  return text + "\n";
 }
 
-bool WriteSettings(const fs::path& path, const std::string& text, std::string* error) {
-  const fs::path temporary = path.string() + ".tmp";
-  std::ofstream file(temporary, std::ios::binary);
-  file << text;
-  file.close();
-  std::error_code code;
-  if (file) fs::rename(temporary, path, code);
-  if (file && !code) return true;
-  *error = PrintablePath(path.string()) + ": cannot be written";
-  return false;
+// What the files of a directory must agree in: the options, and what the data set says, which may
+// change between two runs. Where the data set lies is no part of it.
+std::string SettingsText(const SequenceMatchingOptions& options, const ImageSequence& sequence) {
+  std::string text = "sequence " + sequence.name + "\nstride " + std::to_string(options.stride) +
+                     "\nfeatures " + FeatureTypeName(options.features.type) + "\nmax_features " +
+                     std::to_string(options.features.max_features) + "\nratio " +
+                     CsvNumber(options.features.ratio) + "\n";
+  const auto any = [&](const auto& has) {
+    return std::any_of(sequence.frames.begin(), sequence.frames.end(), has) ? "yes\n" : "no\n";
+  };
+  text += std::string("truth ") +
+          any([](const ImageFrame& frame) { return frame.world_from_body.has_value(); });
+  text +=
+      std::string("times ") + any([](const ImageFrame& frame) { return frame.time.has_value(); });
+  for (size_t k = 0; k < sequence.cameras.size(); ++k) {
+    const RigCamera& camera = sequence.cameras[k].camera;
+    const PinholeCamera& c = camera.intrinsics;
+    const Eigen::Matrix3d& Q = camera.Q;
+    const std::string name = "camera " + std::to_string(k);
+    text += name + " focal" + NumbersText({c.fx, c.fy});
+    text += name + " centre" + NumbersText({c.cx, c.cy});
+    for (int row = 0; row < 3; ++row) {
+      text += name + " row " + std::to_string(row) +
+              NumbersText({Q(row, 0), Q(row, 1), Q(row, 2), camera.s[row]});
+    }
+    if (sequence.cameras[k].distortion) {
+      const RadialTangential& d = *sequence.cameras[k].distortion;
+      text += name + " distortion" + NumbersText({d.k1, d.k2, d.p1, d.p2});
+    }
+  }
+  return text;
 }
 
 bool SameSettings(const fs::path& path, const std::string& text, std::string* error) {
@@ -176,7 +200,8 @@ bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequenc
     if (entry->is_directory(ignored)) continue;
     if (EndsWith(name, kSuffix)) {
       (own.count(name) > 0 ? there : others).insert(name);
-    } else if (own.count(name.substr(0, name.find(".tmp"))) > 0) {
+    } else if (const std::string whole = name.substr(0, name.find(".tmp"));
+               whole != name && (own.count(whole) > 0 || whole == kSettingsName)) {
       temporaries.push_back(entry->path());
     }
   }
@@ -201,7 +226,7 @@ bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequenc
   const std::string text = SettingsText(options, sequence);
   if (!there.empty()) {
     if (!SameSettings(settings, text, error)) return false;
-  } else if (!WriteSettings(settings, text, error)) {
+  } else if (!WriteWholeFile(settings.string(), text, error)) {
     return false;
   }
   for (const fs::path& temporary : temporaries) fs::remove(temporary, code);
@@ -267,6 +292,13 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
     return false;
   }
   summary->num_pairs = static_cast<int>(pairs.size());
+  for (const auto& [frame, which] :
+       {std::pair(pairs.front().frame1, "first"), std::pair(pairs.back().frame2, "last")}) {
+    const std::vector<std::string>& images = sequence.frames[frame].images;
+    if (std::any_of(images.begin(), images.end(), Exists)) continue;
+    summary->notes.push_back("frame " + std::to_string(frame) + ", the " + which +
+                             " of the range, has no images");
+  }
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
                              [&](const FrameIndices& p) { return kept.count(p.FileName()) > 0; }),
               pairs.end());
@@ -283,21 +315,22 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
   std::vector<char> written(todo, 0);
   const auto match = [&](int k) {
     const FrameIndices& indices = pairs[k];
-    const auto features1 = frames[indices.frame1].Get(options.features, sequence, indices.frame1);
-    const auto features2 = frames[indices.frame2].Get(options.features, sequence, indices.frame2);
-    if (features1 != nullptr && features2 != nullptr) {
-      const std::string path = (fs::path(directory) / indices.FileName()).string();
-      FramePair pair = MakePair(sequence, indices);
-      std::string what;
-      try {
+    const std::string path = (fs::path(directory) / indices.FileName()).string();
+    // Nothing may leave a thread, not even that there is no memory for an image.
+    try {
+      const auto features1 = frames[indices.frame1].Get(options.features, sequence, indices.frame1);
+      const auto features2 = frames[indices.frame2].Get(options.features, sequence, indices.frame2);
+      if (features1 != nullptr && features2 != nullptr) {
+        FramePair pair = MakePair(sequence, indices);
+        std::string what;
         if (!AddMatches(options.features, *features1, *features2, &pair, &what)) {
           errors[k] = PrintablePath(path) + ": not written: " + what;
         } else {
           written[k] = WriteMatchFile(path, pair, &errors[k]) ? 1 : 0;
         }
-      } catch (const std::exception& exception) {
-        errors[k] = PrintablePath(path) + ": not written: " + PrintablePath(exception.what());
       }
+    } catch (const std::exception& exception) {
+      errors[k] = PrintablePath(path) + ": not written: " + PrintablePath(exception.what());
     }
     frames[indices.frame1].Release();
     frames[indices.frame2].Release();
@@ -313,6 +346,7 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
   });
 
   for (const FrameFeatures& frame : frames) {
+    summary->missing.insert(summary->missing.end(), frame.missing().begin(), frame.missing().end());
     summary->errors.insert(summary->errors.end(), frame.errors().begin(), frame.errors().end());
   }
   for (int k = 0; k < todo; ++k) {

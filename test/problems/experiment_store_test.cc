@@ -15,7 +15,9 @@
 namespace rigel {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string Read(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -125,6 +127,14 @@ TEST_F(ExperimentStoreTest, SaysWhatIsWrongAndWhere) {
     return OpenError();
   };
   EXPECT_THAT(with(good + "rubbish\n"), HasSubstr(path_ + ":4: no finished point"));
+  // In the store's own words, with the line of the file.
+  std::string overflow = good;
+  overflow.replace(overflow.find("\"x\":20"), 6, "\"x\":1e999");
+  EXPECT_THAT(with(overflow), AllOf(HasSubstr(path_ + ":3: no finished point: number overflow"),
+                                    Not(HasSubstr("json.exception"))));
+  EXPECT_THAT(with(good + "{\"x\": ]}\n"),
+              AllOf(HasSubstr(":4: no finished point: parse error at column 7: "),
+                    Not(HasSubstr("json.exception"))));
   EXPECT_THAT(with(good + good.substr(good.find('\n') + 1)), HasSubstr(":4: no finished point: "
                                                                        "the point is there twice"));
   EXPECT_THAT(with("{}\n"), HasSubstr(":1: of another run"));

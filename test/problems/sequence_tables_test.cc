@@ -68,6 +68,12 @@ TEST(SequenceTables, BestIsMarkedAndThePaperStandsBeside) {
   EXPECT_THAT(text, AllOf(HasSubstr("of Li, Liu, Han, Lv"), Not(HasSubstr("direction"))));
 }
 
+TEST(SequenceTables, BestIsBoldOnATerminal) {
+  EXPECT_EQ(BestInBold("06   0.0800  0.0700*\n07  2e4*  -\n\n*: the best\n"),
+            "06   0.0800  \033[1m0.0700\033[0m*\n07  \033[1m2e4\033[0m*  -\n\n*: the best\n");
+  EXPECT_EQ(BestInBold("-2.5*"), "\033[1m-2.5\033[0m*");
+}
+
 TEST(SequenceTables, ManySolversAreSplitAndNoneIsLost) {
   std::vector<SolverSummary> summaries;
   for (const SolverInfo& solver : SolverCatalogue()) {

@@ -1,5 +1,6 @@
 // rigel_calibrate_prior: files with a wrong normal and a wrong mounting, and what it leaves of
 // them.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -124,7 +125,9 @@ TEST_F(CalibratePriorTest, InPlaceLeavesWholeFilesAndNothingElse) {
   // But for the normal and its sigma, line by line the same.
   std::vector<std::string> kept;
   for (const std::string& line : Lines(ReadText(matches + "/000000.matches"))) {
-    if (line.find("normal") != 0) kept.push_back(line);
+    if (line.find("normal") != 0 && line.find("# rigel_calibrate_prior normal turned by ") != 0) {
+      kept.push_back(line);
+    }
   }
   std::vector<std::string> expected;
   for (const std::string& line : Lines(before)) {
@@ -175,6 +178,99 @@ TEST_F(CalibratePriorTest, BrokenFilesAreToldAndTheOthersUsed) {
   EXPECT_THAT(run.err, AllOf(HasSubstr("000003.matches:2: 3 columns, expected 4"),
                              HasSubstr("wrote 29 match files")));
   EXPECT_THAT(Read(Path("out")), SizeIs(29));
+}
+
+// As a run leaves it that was killed between two files.
+TEST_F(CalibratePriorTest, PartlyCalibratedFilesAreRefused) {
+  const std::string matches = Misaligned("in");
+  const std::string untouched = ReadText(matches + "/000007.matches");
+  const Args in_place = {"--matches=" + matches, "--in_place", "--lines=normal,axis,gravity"};
+  ASSERT_EXIT_CODE(RunTool("calibrate_prior", in_place), 0);
+  // All of them once more: gravity is where it belongs and is turned by nothing worth the name.
+  const Outcome again = RunTool("calibrate_prior", in_place + Args{"--json=-"});
+  EXPECT_EXIT_CODE(again, 0);
+  EXPECT_LT(ParseReport(again.out)["gravity"]["change_deg"].get<double>(), 0.2);
+  const std::vector<std::string> lines = Lines(ReadText(matches + "/000006.matches"));
+  EXPECT_EQ(std::count_if(lines.begin(), lines.end(),
+                          [](const std::string& line) { return line[0] == '#'; }),
+            4);
+
+  WriteText(matches + "/000007.matches", untouched);
+  const std::string before = ReadText(matches + "/000006.matches");
+  for (const char* line : {"normal", "axis", "gravity"}) {
+    for (const std::string& target : {std::string("--in_place"), "--output=" + Path("out")}) {
+      const Outcome run = RunTool("calibrate_prior",
+                                  {"--matches=" + matches, target, std::string("--lines=") + line});
+      EXPECT_EXIT_CODE(run, 1);
+      EXPECT_THAT(Lines(run.err),
+                  ElementsAre(AllOf(HasSubstr("29 of 30 files are calibrated already"),
+                                    HasSubstr("begin again with the files as they were"))));
+      EXPECT_THAT(run.out, IsEmpty());
+    }
+  }
+  EXPECT_EQ(ReadText(matches + "/000006.matches"), before);
+  EXPECT_EQ(ReadText(matches + "/000007.matches"), untouched);
+  EXPECT_FALSE(std::filesystem::exists(Path("out")));
+
+  // Of two calibrations, as an interrupted second one leaves them.
+  WriteText(matches + "/000007.matches",
+            "# rigel_calibrate_prior gravity turned by 3.5 deg\n" + untouched);
+  const Outcome two =
+      RunTool("calibrate_prior", {"--matches=" + matches, "--in_place", "--lines=gravity"});
+  EXPECT_EXIT_CODE(two, 1);
+  EXPECT_THAT(Lines(two.err), ElementsAre(HasSubstr("calibrated by 2 different runs")));
+}
+
+TEST_F(CalibratePriorTest, InPlaceOfABrokenFileWritesNone) {
+  const std::string matches = Misaligned("in");
+  WriteText(matches + "/000003.matches", "format rigmatch 1\nnormal 0 0\n");
+  WriteText(matches + "/000029.matches", "");
+  const std::string before = ReadText(matches + "/000000.matches");
+  const Outcome run = RunTool("calibrate_prior", {"--matches=" + matches, "--in_place"});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(Lines(run.err),
+              ElementsAre(HasSubstr("000003.matches:2: 3 columns"), HasSubstr("000029.matches"),
+                          HasSubstr("nothing is written: --in_place needs all of the files, 2 of "
+                                    "30 cannot be used")));
+  EXPECT_EQ(ReadText(matches + "/000000.matches"), before);
+}
+
+TEST_F(CalibratePriorTest, OutputWithOtherMatchFilesIsRefused) {
+  const std::string matches = Misaligned("in");
+  // Its own work it does again.
+  for (int k = 0; k < 2; ++k) {
+    ASSERT_EXIT_CODE(
+        RunTool("calibrate_prior", {"--matches=" + matches, "--output=" + Path("out")}), 0);
+  }
+  // Another's file, of a name of its own or not.
+  const std::string originals = Simulate("originals", {"--pairs=1", "--num_matches=60"});
+  for (const char* name : {"000004.matches", "other.matches"}) {
+    const std::string out = Path(std::string("out_of_") + name);
+    std::filesystem::create_directory(out);
+    std::filesystem::copy(originals + "/000000.matches", out + "/" + name);
+    const std::string before = ReadText(out + "/" + name);
+    const Outcome run = RunTool("calibrate_prior", {"--matches=" + matches, "--output=" + out});
+    EXPECT_EXIT_CODE(run, 1);
+    EXPECT_THAT(Lines(run.err),
+                ElementsAre(AllOf(HasSubstr(std::string("holds ") + name + ", which"),
+                                  HasSubstr("empty the directory or name another"))));
+    EXPECT_EQ(ReadText(out + "/" + name), before);
+  }
+}
+
+TEST_F(CalibratePriorTest, CamerasOfTwoVehiclesAreRefused) {
+  const std::string matches = Misaligned("in");
+  FramePair pair = Read(matches).back();
+  pair.rig.cameras[1].intrinsics.fx += 1;
+  std::string error;
+  ASSERT_TRUE(WriteMatchFile(pair.name, pair, &error)) << error;
+  const Outcome run =
+      RunTool("calibrate_prior", {"--matches=" + matches, "--output=" + Path("out")});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(Lines(run.err),
+              ElementsAre(AllOf(HasSubstr("of one vehicle: cameras differ between"),
+                                HasSubstr("000000.matches and "), HasSubstr("000029.matches"))));
+  EXPECT_FALSE(std::filesystem::exists(Path("out")));
 }
 
 TEST_F(CalibratePriorTest, WrongFlagsAreUsageErrors) {

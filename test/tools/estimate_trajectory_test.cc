@@ -205,5 +205,22 @@ TEST_F(EstimateTrajectoryTest, WhatCannotBeDoneIsSaid) {
   }
 }
 
+TEST_F(EstimateTrajectoryTest, TwoOutputsInOneFileAreRefused) {
+  const Args matches = {"--matches=/proc/nonexistent/of/rigel"};
+  const Args flags = {"json", "csv", "g2o", "kitti_trajectory", "tum_trajectory"};
+  for (size_t k = 0; k < flags.size(); ++k) {
+    for (size_t i = 0; i < k; ++i) {
+      // The same file by two names.
+      const Outcome run = RunTool("estimate", matches + Args{"--" + flags[i] + "=" + Path("f"),
+                                                             "--" + flags[k] + "=" + Path("./f")});
+      EXPECT_EXIT_CODE(run, 2);
+      EXPECT_THAT(run.err, HasSubstr("that of --" + flags[i] + " goes to this file already"));
+    }
+  }
+  const std::string inter = Simulate("inter", {"--pairs=1", "--inter_share=0.5"});
+  EXPECT_EXIT_CODE(
+      RunTool("estimate", {"--matches=" + inter, "--json=/dev/null", "--csv=/dev/null"}), 0);
+}
+
 }  // namespace
 }  // namespace rigel

@@ -153,11 +153,57 @@ TEST_F(MatchTest, WithoutTimesAndPosesThereAreNoSuchLines) {
   fs::copy(Data() + "/kitti", Path("kitti"), fs::copy_options::recursive);
   fs::remove(Path("kitti/sequences/06/times.txt"));
   fs::remove_all(Path("kitti/poses"));
-  ASSERT_EXIT_CODE(Kitti("out", {"--last=1", "--kitti_root=" + Path("kitti")}), 0);
+  const std::string root = "--kitti_root=" + Path("kitti");
+  const Outcome run = Kitti("out", {"--last=1", root});
+  ASSERT_EXIT_CODE(run, 0);
+  EXPECT_THAT(Lines(run.err), ElementsAre("sequence 06 has no ground truth: the files get no truth "
+                                          "and no gravity",
+                                          HasSubstr("wrote 1 match files")));
   const std::string text = ReadText(Path("out/000000-000001.matches"));
   for (const char* keyword : {"\ntime", "\ntruth", "\ngravity"}) {
     EXPECT_THAT(text, Not(HasSubstr(keyword)));
   }
+  // The truth came later: files with and without it would be mixed.
+  fs::copy(Data() + "/kitti/poses", Path("kitti/poses"), fs::copy_options::recursive);
+  const Outcome resumed = Kitti("out", {root, "--resume"});
+  EXPECT_EXIT_CODE(resumed, 1);
+  EXPECT_THAT(Lines(resumed.err), ElementsAre(AllOf(HasSubstr("made with 'truth no'"),
+                                                    HasSubstr("this run has 'truth yes'"))));
+  EXPECT_THAT(Names(Path("out")), ElementsAre("000000-000001.matches", "rigel_match.settings"));
+}
+
+TEST_F(MatchTest, ResumeWithAnotherCalibrationIsRefusedAndWithAnotherPlaceIsNot) {
+  fs::copy(Data() + "/kitti", Path("kitti"), fs::copy_options::recursive);
+  ASSERT_EXIT_CODE(Kitti("out", {"--last=1"}), 0);
+  const std::string root = "--kitti_root=" + Path("kitti");
+  EXPECT_EXIT_CODE(Kitti("out", {"--last=2", "--resume", root}), 0);
+  const std::string path = Path("kitti/sequences/06/calib.txt");
+  std::string calibration = ReadText(path);
+  const size_t focal = calibration.find("P0: ") + 4;
+  calibration.replace(focal, calibration.find(' ', focal) - focal, "123.5");
+  WriteText(path, calibration);
+  const Outcome run = Kitti("out", {"--last=2", "--resume", root});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("this run has 'camera 0 focal 123.5 ")));
+}
+
+TEST_F(MatchTest, ManyMissingImagesAreFewLines) {
+  fs::copy(Data() + "/kitti", Path("kitti"), fs::copy_options::recursive);
+  for (const char* camera : {"image_0", "image_1"}) {
+    for (int k = 0; k < kFrames; ++k) {
+      // The last of one camera stays: frames count to the highest image.
+      if (k + 1 == kFrames && camera == std::string("image_1")) continue;
+      fs::remove(Path(std::string("kitti/sequences/06/") + camera + "/00000" + std::to_string(k) +
+                      ".png"));
+    }
+  }
+  const Outcome run = Kitti("out", {"--kitti_root=" + Path("kitti")});
+  EXPECT_EXIT_CODE(run, 1);
+  const auto absent = HasSubstr(".png: cannot be opened: No such file or directory");
+  EXPECT_THAT(Lines(run.err),
+              ElementsAre("frame 0, the first of the range, has no images", absent, absent, absent,
+                          absent, absent, "and 2 more images that cannot be opened",
+                          HasSubstr("wrote 0 match files")));
 }
 
 TEST_F(MatchTest, ThreadsAndRepetitionGiveTheSameBytes) {
