@@ -504,7 +504,7 @@ table {{ border-collapse: collapse; }}
 td, th {{ border: 1px solid #bbb; padding: .3em .5em; text-align: left; vertical-align: top; }}
 pre {{ font-size: 12px; line-height: 1.25; overflow-x: auto; background: #f6f6f6; padding: .7em; }}
 .confirmed {{ background: #d9efe6; }} .partly {{ background: #fdf1cf; }}
-.not-confirmed {{ background: #f8dccb; }}
+.not-confirmed {{ background: #f8dccb; }} .too-few-pairs {{ background: #eeeeee; }}
 </style></head><body>
 <h1>Rigel: experiments</h1>
 {body}
@@ -514,7 +514,7 @@ pre {{ font-size: 12px; line-height: 1.25; overflow-x: auto; background: #f6f6f6
 
 def claims_html(report):
     lines = ["<h2>Claims</h2><table><tr><th>of</th><th>experiment</th><th>claim</th>"
-             "<th>verdict</th><th>figures</th><th>where not</th></tr>"]
+             "<th>verdict</th><th>figures</th><th>where not, and why</th></tr>"]
     for claim in report["claims"]:
         cells = [claim[k] for k in ("of", "experiment", "claim", "verdict", "figures", "where_not")]
         kind = claim["verdict"].replace(" ", "-")

@@ -116,6 +116,37 @@ TEST_F(ExperimentTest, AnyNumberOfThreadsAndAnInterruptionChangeNoByte) {
   }
 }
 
+TEST_F(ExperimentTest, ClaimsAreOfAllResultsInTheDirectory) {
+  const std::string out = "--output=" + Path("a");
+  ASSERT_EXIT_CODE(Experiment({"--name=inter-share", "--quick", "--pairs=2", "--no_times", out}),
+                   0);
+  EXPECT_THAT(ReadText(Path("a/claims.md")), Not(HasSubstr("motion of the drives")));
+  WriteText(Path("a/outliers.json"), "[]");
+  const Outcome run =
+      Experiment({"--name=rotation-angle", "--quick", "--pairs=3", "--no_times", out});
+  ASSERT_EXIT_CODE(run, 0);
+  EXPECT_THAT(run.err, HasSubstr("outliers.json: not among the claims"));
+  const std::string claims = ReadText(Path("a/claims.md"));
+  EXPECT_THAT(claims,
+              AllOf(HasSubstr("| inter-share |"), HasSubstr("| rotation-angle |"),
+                    HasSubstr("inter-share: 2 pairs a point, the coarse grid of --quick, seed 1"),
+                    HasSubstr("rotation-angle: 3 pairs a point"), Not(HasSubstr("every"))));
+  EXPECT_THAT(ReadText(Path("a/claims.json")), HasSubstr("inter-share"));
+  // Read from the file it says what it said before.
+  ASSERT_EXIT_CODE(
+      Experiment({"--name=inter-share", "--quick", "--pairs=2", "--no_times", out, "--resume"}), 0);
+  EXPECT_EQ(ReadText(Path("a/claims.md")), claims);
+}
+
+TEST_F(ExperimentTest, AnUnwritablePageIsFoundBeforeTheRun) {
+  const std::string page = Path("missing/page.html");
+  const Outcome run =
+      RunTool("experiment", kSmall + Args{"--output=" + Path("a"), "--html=" + page});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, HasSubstr(page));
+  EXPECT_FALSE(fs::exists(Path("a/outliers.points.jsonl")));
+}
+
 TEST_F(ExperimentTest, KeepsWhatIsThere) {
   const Args args = kSmall + Args{"--output=" + Path("a")};
   ASSERT_EXIT_CODE(Experiment(args), 0);
@@ -183,6 +214,7 @@ TEST_F(ExperimentTest, KittiMotionsHasARowADrive) {
     EXPECT_TRUE(row.contains("time_ms"));
   }
   EXPECT_THAT(drives, testing::ElementsAre("03", "04"));
+  EXPECT_THAT(ReadText(Path("a/claims.md")), HasSubstr("kitti-motions: every 4th motion, seed 1"));
   EXPECT_THAT(ReadText(Path("a/claims.md")), HasSubstr("4pt-axis-approx is the fastest"));
   EXPECT_THAT(ReadText(Path("a/claims.md")), Not(HasSubstr("not measured")));
 }
