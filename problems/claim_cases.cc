@@ -1,6 +1,8 @@
 #include "rigel/problems/claim_cases.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "rigel/problems/csv.h"
 #include "rigel/problems/table.h"
@@ -92,6 +94,37 @@ Value Rows::Largest(const ExperimentPoint& point, const Names& solvers, Quantity
   return largest;
 }
 
+Value Rows::MeanTime(const std::string& solver) const {
+  if (rows_ == nullptr) return std::nullopt;
+  double sum = 0.0;
+  int pairs = 0;
+  for (const ExperimentRow& row : *rows_) {
+    const SolverSummary& s = row.summary;
+    if (s.solver != solver || row.loop != kPaperLoop || !s.ransac_ms) continue;
+    const int solved = s.pairs - s.failures;
+    sum += solved * s.ransac_ms->mean;
+    pairs += solved;
+  }
+  if (pairs == 0) return std::nullopt;
+  return sum / pairs;
+}
+
+int Rows::FewestPairs() const {
+  if (rows_ == nullptr || rows_->empty()) return 0;
+  int fewest = std::numeric_limits<int>::max();
+  for (const ExperimentRow& row : *rows_) {
+    fewest = std::min(fewest, row.summary.pairs - row.summary.failures);
+  }
+  return fewest;
+}
+
+std::string Scatter(const Rows& rows) {
+  const int pairs = rows.FewestPairs();
+  if (pairs < 1) return "";
+  return "medians of " + std::to_string(pairs) + " pairs scatter by about " +
+         FormatNumber(100.0 / std::sqrt(pairs), 0) + " percent";
+}
+
 std::string Rows::Span(const ExperimentPoint& point, const Names& solvers, Quantity q) const {
   return Range(Least(point, solvers, q), Largest(point, solvers, q));
 }
@@ -116,15 +149,39 @@ void Cases::Less(const std::string& where, Value a, const std::string& a_name, V
 
 void Cases::Figure(const std::string& text) { AppendItem("; ", text, &claim_.figures); }
 
+namespace {
+
+Verdict Judge(int held, int count) {
+  if (held == count) return Verdict::kConfirmed;
+  return 4 * held >= 3 * count ? Verdict::kPartly : Verdict::kNotConfirmed;
+}
+
+}  // namespace
+
 Claim Cases::Finish() const {
   Claim claim = claim_;
   if (count_ == 0) {
     claim.figures = "";
     return claim;
   }
-  claim.verdict = held_ == count_           ? Verdict::kConfirmed
-                  : 4 * held_ >= 3 * count_ ? Verdict::kPartly
-                                            : Verdict::kNotConfirmed;
+  if (!too_few_.empty()) {
+    claim.verdict = Verdict::kTooFewPairs;
+    claim.why = too_few_;
+    return claim;
+  }
+  if (majority_) {
+    const bool most = 2 * held_ > count_;
+    claim.verdict = most ? Verdict::kConfirmed : Verdict::kNotConfirmed;
+    if (most) {
+      claim.why.clear();
+      AppendItem("; ",
+                 "holds in " + std::to_string(held_) + " of " + std::to_string(count_) + " cases",
+                 &claim.figures);
+      return claim;
+    }
+  } else {
+    claim.verdict = Judge(held_, count_);
+  }
   if (held_ < count_ && count_ > 1) {
     claim.why = "holds in " + std::to_string(held_) + " of " + std::to_string(count_) +
                 " cases; not in " + claim_.why;

@@ -14,6 +14,8 @@ const char* VerdictName(Verdict verdict) {
       return "partly";
     case Verdict::kNotConfirmed:
       return "not confirmed";
+    case Verdict::kTooFewPairs:
+      return "too few pairs";
     case Verdict::kNotMeasured:
       return "not measured";
   }
@@ -32,7 +34,7 @@ std::string ClaimsMarkdown(const std::string& about, const std::vector<Claim>& c
   std::string text =
       "<!-- Written by rigel_experiment; do not edit. -->\n\n# Claims\n\n" + about + "\n\n";
   text +=
-      "| of | experiment | claim | verdict | figures | where not |\n"
+      "| of | experiment | claim | verdict | figures | where not, and why |\n"
       "| --- | --- | --- | --- | --- | --- |\n";
   for (const Claim& claim : claims) {
     text += "| " + claim.source + " | " + claim.experiment + " | " + claim.text + " | **" +

@@ -17,6 +17,7 @@ enum class Verdict {
   kConfirmed,
   kPartly,  // in most of the cases
   kNotConfirmed,
+  kTooFewPairs,  // chance alone could decide
   kNotMeasured,  // the experiment, or a solver or point of it, is not among the results
 };
 
@@ -28,7 +29,7 @@ struct Claim {
   std::string text;
   Verdict verdict = Verdict::kNotMeasured;
   std::string figures;  // measured
-  std::string why;      // where it does not hold; empty if confirmed
+  std::string why;      // where it does not hold and what explains it; empty if confirmed
 };
 
 // All claims, measured or not, in a fixed order. The paper's are of the raw motions in its loop.

@@ -14,21 +14,6 @@ const Names kFourPoint = {"4pt-lee", "4pt-liu", "4pt-approx", "4pt-axis-approx"}
 const Names kAll = {"17pt-li", "6pt-stewenius", "6pt-ventura",     "4pt-lee",
                     "4pt-liu", "4pt-approx",    "4pt-axis-approx", "3pt-approx"};
 
-// Mean time of RANSAC over all pairs, milliseconds.
-Value MeanTime(const Rows& rows, const std::string& solver) {
-  double sum = 0.0;
-  int pairs = 0;
-  for (const ExperimentPoint& point : rows.Points()) {
-    const SolverSummary* s = rows.Find(point, solver, kPaperLoop);
-    if (s == nullptr || !s->ransac_ms) continue;
-    const int solved = s->pairs - s->failures;
-    sum += solved * s->ransac_ms->mean;
-    pairs += solved;
-  }
-  if (pairs == 0) return std::nullopt;
-  return sum / pairs;
-}
-
 // The median over the sequences of a solver's medians.
 Value Middle(const Rows& rows, const std::string& solver, Quantity q) {
   std::vector<double> values;
@@ -55,7 +40,7 @@ std::string Ranking(const Rows& rows, Quantity q) {
 std::string TimeRanking(const Rows& rows) {
   std::vector<std::pair<double, std::string>> order;
   for (const std::string& solver : kAll) {
-    if (const Value value = MeanTime(rows, solver)) order.emplace_back(*value, solver);
+    if (const Value value = rows.MeanTime(solver)) order.emplace_back(*value, solver);
   }
   std::sort(order.begin(), order.end());
   std::string text;
@@ -119,6 +104,15 @@ std::vector<Claim> KittiClaims(const ExperimentResults& results) {
   three.Figure(pair_of(rotation));
   three_dir.Figure(pair_of(direction));
 
+  const std::string simulated =
+      "Motions are KITTI's, points simulated and gravity and axis exact, unlike the paper's";
+  four.Reason(simulated);
+  translation.Reason(simulated);
+  three_dir.Reason(simulated);
+  three.Reason(
+      "A car pitches and rolls: 3pt-approx leaves that out of its model, while the 4-point solvers "
+      "get it here from an exact prior");
+
   // "In partial sequences" and "superior in 00, 01, 05, 06 and 10": 5 of 11 in both tables.
   constexpr int kPaperWins = 5;
   int won = 0, all = 0;
@@ -143,12 +137,12 @@ std::vector<Claim> KittiClaims(const ExperimentResults& results) {
   Cases linear_fast("paper", kExperiment,
                     "17pt-li, with one solution, is faster in RANSAC than 4pt-lee, 4pt-approx and "
                     "3pt-approx");
-  const Value axis_time = MeanTime(rows, "4pt-axis-approx");
+  const Value axis_time = rows.MeanTime("4pt-axis-approx");
   for (const std::string& solver : kAll) {
-    const Value time = MeanTime(rows, solver);
+    const Value time = rows.MeanTime(solver);
     if (solver != "4pt-axis-approx") fastest.Less("mean ms", axis_time, "axis", time, solver);
     if (solver == "4pt-lee" || solver == "4pt-approx" || solver == "3pt-approx") {
-      linear_fast.Less("mean ms", MeanTime(rows, "17pt-li"), "17pt-li", time, solver);
+      linear_fast.Less("mean ms", rows.MeanTime("17pt-li"), "17pt-li", time, solver);
     }
   }
   fastest.Figure("mean ms: " + TimeRanking(rows));
@@ -174,9 +168,32 @@ std::vector<Claim> KittiClaims(const ExperimentResults& results) {
   }
   limit.Figure("iterations: " + iterations);
   linear_fast.Figure("mean ms as above; iterations: " + iterations);
-  return {four.Finish(),    translation.Finish(), lee.Finish(),
-          axis.Finish(),    three.Finish(),       three_dir.Finish(),
-          fastest.Finish(), linear_fast.Finish(), limit.Finish()};
+  const std::string implementation =
+      "Times are of Rigel's own solvers and scoring; at least 100 and at most 1000 iterations are "
+      "Rigel's choice, the paper does not state its numbers";
+  fastest.Reason(implementation + "; iterations: " + iterations);
+  linear_fast.Reason(implementation + "; a sample of 17 without outliers is rare");
+  limit.Reason(
+      "At most 1000 iterations are Rigel's choice, the paper does not state its limit; a fifth of "
+      "the simulated matches are outliers");
+  Cases slower("paper", kExperiment,
+               "3pt-approx is slightly slower in RANSAC than 4pt-liu, 4pt-axis-approx and "
+               "4pt-approx (to 2.5 times)");
+  const Value three_time = rows.MeanTime("3pt-approx");
+  for (const char* solver : {"4pt-liu", "4pt-axis-approx", "4pt-approx"}) {
+    const Value time = rows.MeanTime(solver);
+    if (!three_time || !time) continue;
+    slower.Add(*three_time > *time && *three_time < 2.5 * *time,
+               std::string("mean ms: 3pt-approx ") + Number(three_time) + ", " + solver + " " +
+                   Number(time));
+  }
+  slower.Figure("mean ms as above");
+  slower.Reason(implementation +
+                ". The paper's own table of times in RANSAC has 3pt-approx slowest of them, that "
+                "of single calls between 4pt-approx and 4pt-lee");
+  return {four.Finish(),  translation.Finish(), lee.Finish(),     axis.Finish(),
+          three.Finish(), three_dir.Finish(),   fastest.Finish(), linear_fast.Finish(),
+          limit.Finish(), slower.Finish()};
 }
 
 }  // namespace rigel::claims

@@ -1,5 +1,7 @@
 // rigel_experiment: the paper's experiments, and more, with tables, figures and verdicts.
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -73,6 +75,21 @@ bool Failed(const std::string& message) {
   return false;
 }
 
+// False with a message on stderr if --html could not be written: better before a long run.
+bool HtmlWritable() {
+  if (FLAGS_html.empty()) return true;
+  std::error_code code;
+  const bool there = fs::exists(FLAGS_html, code);
+  std::FILE* file = std::fopen(FLAGS_html.c_str(), "ab");
+  if (file == nullptr) {
+    const std::string what = std::generic_category().message(errno);
+    return Failed("--html: " + PrintablePath(FLAGS_html) + ": cannot be written: " + what);
+  }
+  std::fclose(file);
+  if (!there) fs::remove(FLAGS_html, code);
+  return true;
+}
+
 // False with a message on stderr.
 bool PrepareOutput(const std::vector<ExperimentPlan>& plans) {
   std::error_code code;
@@ -142,50 +159,90 @@ void PrintClaims(const std::vector<Claim>& claims) {
   }
 }
 
-// What claims.md says of the run.
-std::string AboutRun(const std::vector<ExperimentPlan>& plans) {
-  const ExperimentOptions options = plans.front().options;
-  std::string text =
-      "Each claim of the paper's experiments, and what Rigel adds, held against a run of "
-      "`rigel_experiment` (" +
-      std::to_string(options.pairs) + " pairs a point, " +
-      (options.quick ? "the coarse grid of --quick" : "the full grid") + ", seed " +
-      std::to_string(options.seed) + ", every " + std::to_string(options.every) +
-      "th motion of the drives). ";
-  return text +
-         "The paper's claims are of the raw motions where the largest inlier count wins; errors "
-         "are "
-         "medians in degrees. Confirmed: in all cases; partly: in three of four. \"Best\" and "
-         "\"beat\" are taken to the last digit, and medians of few pairs differ by chance.";
+// What claims.md says of the results: those of one size together.
+std::string AboutResults(const std::vector<StoredExperiment>& all) {
+  std::vector<std::pair<std::string, std::string>> names_by_size;
+  for (const StoredExperiment& stored : all) {
+    const auto same = std::find_if(names_by_size.begin(), names_by_size.end(),
+                                   [&](const auto& entry) { return entry.first == stored.size; });
+    if (same == names_by_size.end()) {
+      names_by_size.emplace_back(stored.size, stored.name);
+    } else {
+      same->second += ", " + stored.name;
+    }
+  }
+  std::string sizes;
+  for (const auto& [size, names] : names_by_size) {
+    sizes += (sizes.empty() ? "" : "; ") + names + ": " + size;
+  }
+  return "Each claim of the paper's experiments, and what Rigel adds, held against results of "
+         "`rigel_experiment` (" +
+         sizes +
+         "). The paper's claims are of the raw motions where the largest inlier count wins; errors "
+         "are medians in degrees, times are of the machine that ran it. Confirmed: in all cases "
+         "unless the claim says otherwise; partly: in three of four; too few pairs: chance could "
+         "decide. \"Best\" and \"beat\" are taken to the last digit, and medians of few pairs "
+         "differ "
+         "by chance.";
+}
+
+// Results of this and of earlier runs in --output, in the order of the catalogue.
+std::vector<StoredExperiment> AllResults(
+    const std::vector<std::pair<std::string, std::string>>& json_by_name) {
+  std::vector<StoredExperiment> all;
+  for (const ExperimentSpec& spec : ExperimentCatalogue()) {
+    const std::string path = OutputPath(std::string(spec.name) + ".json");
+    std::string text, error;
+    const auto own = std::find_if(json_by_name.begin(), json_by_name.end(),
+                                  [&](const auto& entry) { return entry.first == spec.name; });
+    std::error_code code;
+    if (own != json_by_name.end()) {
+      text = own->second;
+    } else if (!fs::exists(path, code) || !ReadInput(path, &text)) {
+      continue;
+    }
+    StoredExperiment stored;
+    if (!ParseExperimentJson(text, &stored, &error) || stored.name != spec.name) {
+      std::cerr << PrintablePath(path)
+                << ": not among the claims: " << (error.empty() ? "of another experiment" : error)
+                << "\n";
+      continue;
+    }
+    all.push_back(std::move(stored));
+  }
+  return all;
 }
 
 // Tables to stdout, all else to files.
 bool WriteResults(const std::vector<ExperimentPlan>& plans,
                   const std::vector<ExperimentStore>& stores) {
-  ExperimentResults results;
+  std::vector<std::pair<std::string, std::string>> json_by_name;
   bool ok = true;
   for (size_t k = 0; k < plans.size(); ++k) {
     const std::string name = plans[k].spec->name;
     const std::vector<ExperimentRow> rows = stores[k].RowsInOrder(plans[k]);
     const std::string table = ExperimentTable(plans[k], rows);
     std::cout << table << "\n";
+    json_by_name.emplace_back(name, ExperimentJson(plans[k], rows));
     const std::pair<std::string, std::string> files[] = {
-        {name + ".json", ExperimentJson(plans[k], rows)},
+        {name + ".json", json_by_name.back().second},
         {name + ".csv", ExperimentCsv(plans[k], rows)},
         {name + ".txt", table}};
     for (const auto& [file, text] : files) {
       std::string error;
       if (!WriteWholeFile(OutputPath(file), text, &error)) ok = Failed(error);
     }
-    results[name] = rows;
   }
+  const std::vector<StoredExperiment> all = AllResults(json_by_name);
+  ExperimentResults results;
+  for (const StoredExperiment& stored : all) results[stored.name] = stored.rows;
   std::vector<Claim> claims = EvaluateClaims(results);
   claims.erase(std::remove_if(claims.begin(), claims.end(),
                               [&](const Claim& c) { return results.count(c.experiment) == 0; }),
                claims.end());
   PrintClaims(claims);
   std::string error;
-  if (!WriteWholeFile(OutputPath("claims.md"), ClaimsMarkdown(AboutRun(plans), claims), &error) ||
+  if (!WriteWholeFile(OutputPath("claims.md"), ClaimsMarkdown(AboutResults(all), claims), &error) ||
       !WriteWholeFile(OutputPath("claims.json"), ClaimsJson(claims), &error)) {
     ok = Failed(error);
   }
@@ -267,7 +324,7 @@ int Run() {
     plans.push_back(std::move(plan));
   }
   std::vector<ExperimentStore> stores;
-  if (!PrepareOutput(plans) || !RunPoints(plans, &stores)) return kExitFailed;
+  if (!PrepareOutput(plans) || !HtmlWritable() || !RunPoints(plans, &stores)) return kExitFailed;
   bool ok = WriteResults(plans, stores);
   ok = DrawFigures() && ok;
   return ok ? kExitDone : kExitFailed;

@@ -6,7 +6,8 @@
                                            --per_pair) or bars of the medians
   rigel_plot.py benchmark.json             rigel_benchmark --json: bars of the solvers' times
   rigel_plot.py --estimate=E --truth=T     two trajectories in KITTI's format (12 numbers a line)
-                                           or TUM's (time x y z qx qy qz qw), from above
+                                           or TUM's (time x y z qx qy qz qw), from above: along
+                                           --vertical, y of a camera (x right, y down, z ahead)
 
 Exit code: 0 done, 1 failed, 2 wrong flag, 3 matplotlib is missing.
 """
@@ -18,6 +19,7 @@ import math
 import os
 import re
 import sys
+import zlib
 
 NO_MATPLOTLIB = 3
 GUARD = "RIGEL_PLOT_SECOND_PYTHON"
@@ -40,20 +42,23 @@ except ImportError:
               file=sys.stderr)
         sys.exit(NO_MATPLOTLIB)
 
-# Okabe and Ito's colours, told apart by colour-blind readers; markers tell them apart in print.
+# Okabe and Ito's colours and some of Tol's, told apart by colour-blind readers; markers tell them
+# apart in print. A solver looks the same in all figures: no two share colour and marker, and in no
+# experiment do two share a colour.
 BLACK, GREY = "#000000", "#7f7f7f"
 ORANGE, SKY, GREEN = "#E69F00", "#56B4E9", "#009E73"
 BLUE, RED, PINK = "#0072B2", "#D55E00", "#CC79A7"
+WINE, INDIGO, OLIVE = "#882255", "#332288", "#999933"
 STYLES = {
     "17pt-li": (GREY, "s"), "6pt-stewenius": (PINK, "D"), "6pt-ventura": (ORANGE, "^"),
-    "5pt+1": (ORANGE, "P"), "2pt-choi": (BLACK, "x"), "2pt-ackermann": (SKY, "+"),
+    "5pt+1": (OLIVE, "P"), "2pt-choi": (GREEN, "x"), "2pt-ackermann": (SKY, "+"),
     "4pt-lee": (SKY, "v"), "4pt-liu": (GREEN, "<"), "4pt-sweeney": (PINK, ">"),
-    "4pt-approx": (BLUE, "o"), "4pt-axis-approx": (RED, "*"), "3pt-approx": (RED, "o"),
-    "4pt-approx-polished": (SKY, "v"), "4pt-axis-approx-polished": (ORANGE, "^"),
-    "3pt-approx-polished": (ORANGE, "^"), "4pt": (BLACK, "+"), "4pt-axis": (GREY, "x"),
-    "3pt": (BLACK, "+"),
+    "4pt-approx": (BLUE, "o"), "4pt-axis-approx": (RED, "*"), "3pt-approx": (BLACK, "o"),
+    "4pt-approx-polished": (GREY, "d"), "4pt-axis-approx-polished": (WINE, "p"),
+    "3pt-approx-polished": (OLIVE, "h"), "4pt": (INDIGO, "+"), "4pt-axis": (PINK, "X"),
+    "3pt": (GREEN, "1"),
 }
-SPARE = [BLACK, BLUE, GREEN, SKY, ORANGE, PINK, RED, GREY]
+SPARE = [WINE, INDIGO, OLIVE, BLUE, GREEN, SKY, ORANGE, PINK, RED, GREY]
 
 METRICS = [("rotation_deg", r"rotation error [deg]", 1.0),
            ("translation_dir_deg", r"translation direction error [deg]", 1.0)]
@@ -63,20 +68,25 @@ LOG_X = {"match-count"}
 LOOPS = {"paper": "largest inlier count, as the paper", "rigel": "Rigel's RANSAC"}
 
 
+# The bound is an RMS, the curves are medians, and the median of a Gaussian error's norm lies below
+# its RMS. Drawn as it is the bound would seem to be beaten by what merely reaches it. It is drawn
+# times median over RMS of the norm of an isotropic Gaussian: of three dimensions, sqrt(2.366 / 3),
+# for the rotation, of two, sqrt(ln 2), for the direction. An anisotropic error's factor is lower.
+MEDIAN_OVER_RMS = {"rotation_deg": 0.8881, "translation_dir_deg": 0.8326}
+BOUND_LABEL = "Cramér-Rao bound (as a median)"
+
+
 class Bad(Exception):
     """A message for the user."""
 
 
+def style_of(solver):
+    """Colour and marker: an unknown solver's follow from its name, not from the figure."""
+    return STYLES.get(solver, (SPARE[zlib.crc32(solver.encode()) % len(SPARE)], "8"))
+
+
 def styles_of(solvers):
-    """Colour and marker of each solver of a figure: its own, or the first colour that is free."""
-    styles = {}
-    for number, solver in enumerate(solvers):
-        color, marker = STYLES.get(solver, (SPARE[number % len(SPARE)], "o"))
-        taken = {c for c, _ in styles.values()}
-        if color in taken:
-            color = next((c for c in SPARE if c not in taken), color)
-        styles[solver] = (color, marker)
-    return styles
+    return {solver: style_of(solver) for solver in solvers}
 
 
 def unique(items):
@@ -86,6 +96,11 @@ def unique(items):
 def median(row, stage, metric, factor):
     value = row.get(stage, {}).get(metric, {}).get("median")
     return None if value is None else factor * value
+
+
+def bound_as_median(row, metric, factor):
+    value = median(row, "bound", metric, factor)
+    return None if value is None else MEDIAN_OVER_RMS[metric] * value
 
 
 def new_figure(rows, columns, width, height):
@@ -102,7 +117,7 @@ def stage_handles(bound):
     handles = [Line2D([], [], color=BLACK, lw=1.1, ls="--", label="raw"),
                Line2D([], [], color=BLACK, lw=1.6, ls="-", label="refined")]
     if bound:
-        handles.append(Line2D([], [], color=BLACK, lw=1.6, ls=":", label="Cramér-Rao bound (RMS)"))
+        handles.append(Line2D([], [], color=BLACK, lw=1.6, ls=":", label=BOUND_LABEL))
     return handles
 
 
@@ -132,7 +147,7 @@ def draw_curves(axis, rows, solvers, metric, factor):
                 axis.plot(*zip(*points), color=color, marker=marker, ls=line, lw=width,
                           markersize=size, markerfacecolor="none" if stage == "raw" else color)
         for r in mine:
-            value = median(r, "bound", metric, factor)
+            value = bound_as_median(r, metric, factor)
             if value is not None:
                 bound.setdefault(r["x"], []).append(value)
     if bound:
@@ -203,6 +218,7 @@ def plot_sequences(report, loop):
     sequences = unique(r["sequence"] for r in rows)
     solvers = unique(r["solver"] for r in rows)
     figure, axes = new_figure(2, 1, 10.5, 6.6)
+    any_bound = False
     for i, (metric, label, factor) in enumerate(METRICS):
         axis = axes[i][0]
         for k, sequence in enumerate(sequences):
@@ -216,7 +232,7 @@ def plot_sequences(report, loop):
                         continue
                     raw = median(row, "raw", metric, factor)
                     refined = median(row, "refined", metric, factor)
-                    bound = median(row, "bound", metric, factor)
+                    bound = bound_as_median(row, metric, factor)
                     if raw is not None:
                         axis.plot(x, raw, marker=marker, color=color, markersize=5.5,
                                   markerfacecolor="none")
@@ -225,6 +241,7 @@ def plot_sequences(report, loop):
                     if bound is not None:
                         bounds.append(bound)
             if bounds:
+                any_bound = True
                 axis.plot([k - 0.45, k + 0.45], [sorted(bounds)[len(bounds) // 2]] * 2,
                           color=BLACK, ls=":", lw=1.8)
         finish_axis(axis, False, True)
@@ -237,11 +254,13 @@ def plot_sequences(report, loop):
                     y=0.99)
     figure.legend(handles=solver_handles(solvers, ""), loc="upper center", ncol=len(solvers),
                   bbox_to_anchor=(0.5, 0.962), frameon=False, fontsize=8.5, columnspacing=1.2)
-    figure.legend(handles=[
+    handles = [
         Line2D([], [], color=BLACK, marker="o", ls="", markerfacecolor="none", label="raw"),
-        Line2D([], [], color=BLACK, marker="o", ls="", markersize=3.5, label="refined"),
-        Line2D([], [], color=BLACK, ls=":", lw=1.8, label="Cramér-Rao bound (RMS)")],
-        loc="upper center", ncol=3, bbox_to_anchor=(0.5, 0.93), frameon=False, fontsize=8.5)
+        Line2D([], [], color=BLACK, marker="o", ls="", markersize=3.5, label="refined")]
+    if any_bound:
+        handles.append(Line2D([], [], color=BLACK, ls=":", lw=1.8, label=BOUND_LABEL))
+    figure.legend(handles=handles, loc="upper center", ncol=3, bbox_to_anchor=(0.5, 0.93),
+                  frameon=False, fontsize=8.5)
     figure.subplots_adjust(left=0.065, right=0.985, bottom=0.075, top=0.875, hspace=0.12)
     return figure
 
@@ -261,7 +280,7 @@ def bars(solvers, series, label, title, colors=None):
             if value is None or not value > 0:
                 continue
             y = k + height * (n - (len(series) - 1) / 2)
-            color = STYLES.get(solver, (GREY, ""))[0]
+            color = style_of(solver)[0]
             axis.barh(y, value, height=0.92 * height, color=faded(color, fades[n % len(fades)]),
                       edgecolor=color, lw=0.8)
             axis.text(value * 1.04, y, f"{value:.3g}", va="center", fontsize=7.5)
@@ -324,7 +343,10 @@ def plot_report(report, stem):
         figures = []
         for metric, label, factor in METRICS:
             series = [(stage, [median(rows[s], stage, metric, factor) for s in solvers])
-                      for stage in ("raw", "refined", "bound")]
+                      for stage in ("raw", "refined")]
+            bounds = [bound_as_median(rows[s], metric, factor) for s in solvers]
+            if any(bounds):
+                series.append((BOUND_LABEL, bounds))
             if any(v for _, values in series for v in values):
                 figures.append((f"{stem}-{metric}", bars(solvers, series, label, "medians")))
         return figures
@@ -389,13 +411,10 @@ def read_trajectory(path):
     return points
 
 
-def plot_trajectory(estimate_path, truth_path):
+def plot_trajectory(estimate_path, truth_path, vertical):
     tracks = [("truth", truth_path, BLACK, ":", 2.0), ("estimate", estimate_path, RED, "-", 1.3)]
     tracks = [(n, read_trajectory(p), c, l, w) for n, p, c, l, w in tracks if p]
-    # The vertical is the axis along which the first track extends least.
-    spans = [max(p[k] for p in tracks[0][1]) - min(p[k] for p in tracks[0][1]) for k in range(3)]
-    down = min(range(3), key=lambda k: (spans[k], k != 1))
-    across, ahead = [k for k in range(3) if k != down]
+    across, ahead = [k for k in range(3) if "xyz"[k] != vertical]
     figure, axes = new_figure(1, 1, 6.5, 6.5)
     axis = axes[0][0]
     for name, points, color, line, width in tracks:
@@ -441,27 +460,38 @@ def read_json(path):
             value = json.load(file)
     except (OSError, ValueError) as error:
         raise Bad(f"{path}: cannot be read: {error}") from error
+    except RecursionError as error:
+        raise Bad(f"{path}: cannot be read: nested too deeply") from error
     if not isinstance(value, dict):
         raise Bad(f"{path}: not a report of Rigel")
     return value
 
 
-def plot_file(path):
-    """(name, figure) of each figure of a report; the report."""
-    report = read_json(path)
+EXPERIMENT, REPORT, BENCHMARK, CLAIMS = FORMATS = (
+    "rigel-experiment 1", "rigel-report 1", "rigel-benchmark 1", "rigel-claims 1")
+
+
+def need_results(report, key, path):
+    if not report[key]:
+        raise Bad(f"{path}: there are no results in it")
+
+
+def plot_file(path, report):
+    """(name, figure) of each figure of a report."""
     stem = os.path.splitext(os.path.basename(path))[0]
     kind = report.get("format")
-    try:
-        if kind == "rigel-experiment 1":
-            return plot_experiment(report), report
-        if kind == "rigel-report 1":
-            return plot_report(report, stem), report
-        if kind == "rigel-benchmark 1":
-            return plot_benchmark(report, stem), report
-    except (KeyError, TypeError, AttributeError, IndexError) as error:
-        raise Bad(f"{path}: not of its format {kind!r}: {error!r}") from error
-    if kind == "rigel-claims 1":
-        return [], report
+    if kind == EXPERIMENT:
+        # It names files.
+        if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*", report["experiment"]):
+            raise Bad(f"{path}: no name of an experiment: {report['experiment']!r}")
+        need_results(report, "results", path)
+        return plot_experiment(report)
+    if kind == REPORT:
+        need_results(report, "results", path)
+        return plot_report(report, stem)
+    if kind == BENCHMARK:
+        need_results(report, "solvers", path)
+        return plot_benchmark(report, stem)
     raise Bad(f"{path}: its format is {kind!r}, which has no figure")
 
 
@@ -474,7 +504,7 @@ table {{ border-collapse: collapse; }}
 td, th {{ border: 1px solid #bbb; padding: .3em .5em; text-align: left; vertical-align: top; }}
 pre {{ font-size: 12px; line-height: 1.25; overflow-x: auto; background: #f6f6f6; padding: .7em; }}
 .confirmed {{ background: #d9efe6; }} .partly {{ background: #fdf1cf; }}
-.not-confirmed {{ background: #f8dccb; }}
+.not-confirmed {{ background: #f8dccb; }} .too-few-pairs {{ background: #eeeeee; }}
 </style></head><body>
 <h1>Rigel: experiments</h1>
 {body}
@@ -484,7 +514,7 @@ pre {{ font-size: 12px; line-height: 1.25; overflow-x: auto; background: #f6f6f6
 
 def claims_html(report):
     lines = ["<h2>Claims</h2><table><tr><th>of</th><th>experiment</th><th>claim</th>"
-             "<th>verdict</th><th>figures</th><th>where not</th></tr>"]
+             "<th>verdict</th><th>figures</th><th>where not, and why</th></tr>"]
     for claim in report["claims"]:
         cells = [claim[k] for k in ("of", "experiment", "claim", "verdict", "figures", "where_not")]
         kind = claim["verdict"].replace(" ", "-")
@@ -510,16 +540,26 @@ def image_html(svg_path, name):
 
 
 def inputs_of(paths):
-    files = []
+    """(path, report) of each file; in a directory only of those whose format is known."""
+    reports = []
     for path in paths:
-        if os.path.isdir(path):
-            found = sorted(f for f in os.listdir(path) if f.endswith(".json"))
-            if not found:
-                raise Bad(f"{path}: no results (*.json) in this directory")
-            files += [os.path.join(path, f) for f in found]
-        else:
-            files.append(path)
-    return files
+        if not os.path.isdir(path):
+            reports.append((path, read_json(path)))
+            continue
+        before = len(reports)
+        for name in sorted(f for f in os.listdir(path) if f.endswith(".json")):
+            file = os.path.join(path, name)
+            try:
+                report = read_json(file)
+                if report.get("format") not in FORMATS:
+                    raise Bad(f"{file}: its format is {report.get('format')!r}")
+            except Bad as error:
+                print(f"rigel_plot.py: left out: {error}", file=sys.stderr)
+                continue
+            reports.append((file, report))
+        if len(reports) == before:
+            raise Bad(f"{path}: no results (*.json) in this directory")
+    return reports
 
 
 def run(arguments):
@@ -546,17 +586,24 @@ def run(arguments):
                 part.append("<pre>" + html.escape(file.read()) + "</pre>")
         sections["other"].append("\n".join(part))
 
-    for path in inputs_of(arguments.inputs):
-        figures, report = plot_file(path)
-        if report["format"] == "rigel-claims 1":
-            sections["claims"].append(claims_html(report))
-            continue
-        title = report.get("experiment", os.path.basename(path))
-        if "about" in report:
-            title += ": " + report["about"]
-        add(figures, title, os.path.splitext(path)[0] + ".txt")
+    for path, report in inputs_of(arguments.inputs):
+        kind = report.get("format")
+        try:
+            if kind == CLAIMS:
+                sections["claims"].append(claims_html(report))
+                continue
+            figures = plot_file(path, report)
+            title = report.get("experiment", os.path.basename(path))
+            if "about" in report:
+                title += ": " + report["about"]
+            add(figures, title, os.path.splitext(path)[0] + ".txt")
+        except Bad:
+            raise
+        except Exception as error:  # what is wrong with a report can show itself anywhere
+            what = " ".join(repr(error).split())[:200]
+            raise Bad(f"{path}: not of its format {kind!r}: {what}") from error
     if arguments.estimate or arguments.truth:
-        add(plot_trajectory(arguments.estimate, arguments.truth), "Trajectory")
+        add(plot_trajectory(arguments.estimate, arguments.truth, arguments.vertical), "Trajectory")
     if arguments.html:
         write_html(arguments.html, sections["claims"] + sections["other"])
         print(f"wrote {arguments.html}", file=sys.stderr)
@@ -572,6 +619,8 @@ def main():
     parser.add_argument("--dpi", type=int, default=130, help="resolution of the PNG files")
     parser.add_argument("--estimate", help="trajectory to draw")
     parser.add_argument("--truth", help="true trajectory to draw")
+    parser.add_argument("--vertical", choices="xyz", default="y",
+                        help="axis of the trajectories that is looked along; default y")
     arguments = parser.parse_args()
     if not 10 <= arguments.dpi <= 1200:
         parser.error("--dpi: expected 10 to 1200")

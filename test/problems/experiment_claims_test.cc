@@ -1,6 +1,7 @@
 // The verdicts, on results made up so that each holds or does not.
 #include "rigel/problems/experiment_claims.h"
 
+#include <cmath>
 #include <functional>
 
 #include <gmock/gmock.h>
@@ -32,7 +33,7 @@ std::vector<ExperimentRow> MakeRows(const std::string& experiment, const RawErro
         const double error = raw(point, solver);
         SolverSummary s;
         s.solver = solver;
-        s.pairs = 10;
+        s.pairs = 100;
         s.raw_rotation_deg = s.raw_direction_deg = Statistics{error, error, error, error};
         const double r = refined_over_raw * error;
         s.refined_rotation_deg = s.refined_direction_deg = Statistics{r, r, r, r};
@@ -167,6 +168,126 @@ TEST(ExperimentClaims, HalfOfRawAndTheBound) {
   EXPECT_EQ(Find(results, "image-noise", "at most half").verdict, Verdict::kNotConfirmed);
   for (ExperimentRow& row : results["image-noise"]) row.summary.bound_rotation_deg->rms *= 0.8;
   EXPECT_EQ(Find(results, "image-noise", "Cramer-Rao").verdict, Verdict::kNotConfirmed);
+}
+
+// Twice the bound's distance: confirmed, refused, or not told with few pairs.
+TEST(ExperimentClaims, TheLimitKnowsTheNumberOfPairs) {
+  const auto claim = [](double ratio, int pairs, const char* part) {
+    ExperimentResults results;
+    results["image-noise"] =
+        MakeRows("image-noise", [](const auto&, const std::string&) { return 0.1; });
+    for (ExperimentRow& row : results["image-noise"]) {
+      row.summary.pairs = pairs;
+      row.summary.refined_rotation_deg->rms = ratio * row.summary.bound_rotation_deg->rms;
+    }
+    return Find(results, "image-noise", part);
+  };
+  const char* const bound = "Cramer-Rao";
+  // Three motions of 100 pairs and more: 1.1. Of 30: 1.183.
+  EXPECT_EQ(claim(1.09, 500, bound).verdict, Verdict::kConfirmed);
+  EXPECT_NE(claim(1.11, 500, bound).verdict, Verdict::kConfirmed);
+  EXPECT_NE(claim(1.15, 60, bound).verdict, Verdict::kConfirmed);
+  EXPECT_EQ(claim(1.15, 30, bound).verdict, Verdict::kConfirmed);
+  EXPECT_NE(claim(1.20, 30, bound).verdict, Verdict::kConfirmed);
+  EXPECT_THAT(claim(1.15, 30, bound).figures, HasSubstr("limit 1.18"));
+  for (const double ratio : {1.0, 2.0}) {
+    EXPECT_EQ(claim(ratio, 5, bound).verdict, Verdict::kTooFewPairs);
+  }
+  EXPECT_EQ(claim(1.0, 35, "at most half").verdict, Verdict::kTooFewPairs);
+  EXPECT_EQ(claim(1.0, 36, "at most half").verdict, Verdict::kConfirmed);
+}
+
+TEST(ExperimentClaims, MostCasesAreMoreThanHalf) {
+  const auto verdict = [](double to) {
+    ExperimentResults results;
+    results["planar-vibration"] =
+        MakeRows("planar-vibration", [&](const ExperimentPoint& point, const std::string& solver) {
+          return solver == "3pt-approx" ? (*point.x <= to ? 0.1 : 0.3) : 0.2;
+        });
+    return Find(results, "planar-vibration", "than 2pt-choi in most cases").verdict;
+  };
+  EXPECT_EQ(verdict(1.01), Verdict::kConfirmed) << "six of eleven";
+  EXPECT_EQ(verdict(0.81), Verdict::kNotConfirmed) << "five of eleven";
+}
+
+TEST(ExperimentClaims, FlatIsFlatBetweenTheEnds) {
+  ExperimentResults results;
+  results["pitch-noise"] = MakeRows("pitch-noise", [](const ExperimentPoint& p, const auto&) {
+    return *p.x > 0.3 && *p.x < 0.9 ? 0.2 : 0.1;
+  });
+  EXPECT_EQ(Find(results, "pitch-noise", "refined errors stay the same").verdict,
+            Verdict::kNotConfirmed);
+}
+
+TEST(ExperimentClaims, TimesOfThePaper) {
+  const auto times = [](double factor) {
+    ExperimentResults results;
+    for (const char* name : {"image-noise", "kitti-motions"}) {
+      results[name] = MakeRows(name, [&](const auto&, const std::string& solver) {
+        return solver == "4pt-liu"           ? 1.0
+               : solver == "4pt-axis-approx" ? 1.5
+               : solver == "4pt-approx"      ? 1.7 * factor
+               : solver == "4pt-lee"         ? 2.9
+               : solver == "3pt-approx"      ? 2.0
+                                             : 6.0 / factor;
+      });
+    }
+    return results;
+  };
+  for (const char* part : {"far faster", "the fastest 4-point solver", "about 1.7 times"}) {
+    EXPECT_EQ(Find(times(1.0), "image-noise", part).verdict, Verdict::kConfirmed) << part;
+    EXPECT_NE(Find(times(2.0), "image-noise", part).verdict, Verdict::kConfirmed) << part;
+  }
+  EXPECT_EQ(Find(times(1.0), "kitti-motions", "slightly slower").verdict, Verdict::kConfirmed);
+  EXPECT_NE(Find(times(2.0), "kitti-motions", "slightly slower").verdict, Verdict::kConfirmed);
+}
+
+TEST(ExperimentClaims, UnaffectedAndSlowlyGrowing) {
+  const auto results = [](double six_growth, double three_growth) {
+    ExperimentResults all;
+    for (const char* name : {"pitch-noise", "roll-noise", "planar-vibration"}) {
+      all[name] = MakeRows(name, [&](const ExperimentPoint& p, const std::string& solver) {
+        return IsSixDof(solver) ? 0.1 * (1 + six_growth * *p.x) : 0.1 * (1 + *p.x);
+      });
+    }
+    all["planar-image-noise"] =
+        MakeRows("planar-image-noise", [&](const ExperimentPoint& p, const std::string& solver) {
+          return 0.1 * (1 + *p.x * (solver == "3pt-approx" ? three_growth : 1.0));
+        });
+    return all;
+  };
+  for (const char* name : {"pitch-noise", "roll-noise", "planar-vibration"}) {
+    EXPECT_EQ(Find(results(0, 0), name, "unaffected").verdict, Verdict::kConfirmed) << name;
+    EXPECT_NE(Find(results(1, 0), name, "unaffected").verdict, Verdict::kConfirmed) << name;
+  }
+  EXPECT_EQ(Find(results(0, 0), "pitch-noise", "solvers grow").verdict, Verdict::kConfirmed);
+  EXPECT_EQ(Find(results(0, 0.5), "planar-image-noise", "more slowly").verdict,
+            Verdict::kConfirmed);
+  EXPECT_EQ(Find(results(0, 2.0), "planar-image-noise", "more slowly").verdict,
+            Verdict::kNotConfirmed);
+}
+
+// Of errors without any order, and of their opposites: what fails has a why with a reason.
+TEST(ExperimentClaims, WhatIsNotConfirmedHasAReason) {
+  int failed = 0;
+  for (const double sign : {1.0, -1.0}) {
+    ExperimentResults results;
+    for (const ExperimentSpec& spec : ExperimentCatalogue()) {
+      int count = 0;
+      results[spec.name] = MakeRows(
+          spec.name,
+          [&](const auto&, const std::string&) {
+            return std::exp(sign * (count++ * 7919 % 13) / 4.0);
+          },
+          0.9);
+    }
+    for (const Claim& claim : EvaluateClaims(results)) {
+      if (claim.verdict == Verdict::kConfirmed) continue;
+      ++failed;
+      EXPECT_THAT(claim.why, HasSubstr(". ")) << claim.text;
+    }
+  }
+  EXPECT_GT(failed, 40);
 }
 
 TEST(ExperimentClaims, KittiRankings) {

@@ -116,6 +116,38 @@ TEST_F(ExperimentTest, AnyNumberOfThreadsAndAnInterruptionChangeNoByte) {
   }
 }
 
+TEST_F(ExperimentTest, ClaimsAreOfAllResultsInTheDirectory) {
+  const std::string out = "--output=" + Path("a");
+  ASSERT_EXIT_CODE(Experiment({"--name=inter-share", "--quick", "--pairs=2", "--no_times", out}),
+                   0);
+  EXPECT_THAT(ReadText(Path("a/claims.md")), Not(HasSubstr("kitti-motions:")));
+  WriteText(Path("a/outliers.json"), "[]");
+  const Outcome run =
+      Experiment({"--name=rotation-angle", "--quick", "--pairs=3", "--no_times", out});
+  ASSERT_EXIT_CODE(run, 0);
+  EXPECT_THAT(run.err, HasSubstr("outliers.json: not among the claims"));
+  const std::string claims = ReadText(Path("a/claims.md"));
+  EXPECT_THAT(
+      claims,
+      AllOf(HasSubstr("| inter-share |"), HasSubstr("| rotation-angle |"),
+            HasSubstr("inter-share: 2 pairs a point, the coarse grid of --quick, seed 1"),
+            HasSubstr("rotation-angle: 3 pairs a point"), Not(HasSubstr("kitti-motions:"))));
+  EXPECT_THAT(ReadText(Path("a/claims.json")), HasSubstr("inter-share"));
+  // Read from the file it says what it said before.
+  ASSERT_EXIT_CODE(
+      Experiment({"--name=inter-share", "--quick", "--pairs=2", "--no_times", out, "--resume"}), 0);
+  EXPECT_EQ(ReadText(Path("a/claims.md")), claims);
+}
+
+TEST_F(ExperimentTest, AnUnwritablePageIsFoundBeforeTheRun) {
+  const std::string page = Path("missing/page.html");
+  const Outcome run =
+      RunTool("experiment", kSmall + Args{"--output=" + Path("a"), "--html=" + page});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, HasSubstr(page));
+  EXPECT_FALSE(fs::exists(Path("a/outliers.points.jsonl")));
+}
+
 TEST_F(ExperimentTest, KeepsWhatIsThere) {
   const Args args = kSmall + Args{"--output=" + Path("a")};
   ASSERT_EXIT_CODE(Experiment(args), 0);
@@ -183,6 +215,7 @@ TEST_F(ExperimentTest, KittiMotionsHasARowADrive) {
     EXPECT_TRUE(row.contains("time_ms"));
   }
   EXPECT_THAT(drives, testing::ElementsAre("03", "04"));
+  EXPECT_THAT(ReadText(Path("a/claims.md")), HasSubstr("kitti-motions: every 4th motion, seed 1"));
   EXPECT_THAT(ReadText(Path("a/claims.md")), HasSubstr("4pt-axis-approx is the fastest"));
   EXPECT_THAT(ReadText(Path("a/claims.md")), Not(HasSubstr("not measured")));
 }
@@ -299,6 +332,123 @@ TEST_F(PlotTest, SaysWhatItCannotDraw) {
   }
   EXPECT_EXIT_CODE(RunTool("plot.py", {output}), 2);
   EXPECT_EXIT_CODE(RunTool("plot.py", {"--help"}), 0);
+}
+
+// A straight drive ahead that climbs a little: least extent is across, yet y is the vertical.
+TEST_F(PlotTest, FromAboveLooksAlongTheVertical) {
+  SKIP_WITHOUT_MATPLOTLIB();
+  std::string kitti, tum;
+  for (int k = 0; k < 10; ++k) {
+    const std::string y = std::to_string(-0.1 * k), z = std::to_string(k);
+    kitti += "1 0 0 0 0 1 0 " + y + " 0 0 1 " + z + "\n";
+    tum += z + " 0 " + y + " " + z + " 0 0 0 1\n";
+  }
+  WriteText(Path("kitti.txt"), kitti);
+  WriteText(Path("tum.txt"), tum);
+  const auto axes = [&](const Args& args) {
+    EXPECT_EXIT_CODE(RunTool("plot.py", args + Args{"--output=" + Path("f")}), 0);
+    const std::string svg = ReadText(Path("f/trajectory.svg"));
+    std::string found;
+    for (const char* axis : {"x", "y", "z"}) {
+      if (svg.find(std::string(">") + axis + " [m]<") != std::string::npos) found += axis;
+    }
+    return found;
+  };
+  for (const char* name : {"kitti.txt", "tum.txt"}) {
+    EXPECT_EQ(axes({"--estimate=" + Path(name)}), "xz") << name;
+    EXPECT_EQ(axes({"--estimate=" + Path(name), "--vertical=z"}), "xy") << name;
+    EXPECT_EQ(axes({"--estimate=" + Path(name), "--vertical=x"}), "yz") << name;
+  }
+  EXPECT_EXIT_CODE(RunTool("plot.py", {"--estimate=" + Path("tum.txt"), "--vertical=w"}), 2);
+}
+
+// An experiment with one point, as JSON.
+std::string MadeUp(const std::string& name, const std::vector<std::string>& solvers,
+                   const std::string& more) {
+  std::string rows;
+  for (const std::string& solver : solvers) {
+    const std::string stats = "{\"rotation_deg\": {\"median\": 1}}";
+    rows += std::string(rows.empty() ? "" : ", ") +
+            "{\"motion\": \"random\", \"x\": 1, \"loop\": \"paper\", \"sequence\": \"00\", "
+            "\"solver\": \"" +
+            solver + "\", \"raw\": " + stats + ", \"refined\": " + stats + more + "}";
+  }
+  return "{\"format\": \"rigel-experiment 1\", \"experiment\": \"" + name +
+         "\", \"x\": {\"label\": \"x\"}, \"results\": [" + rows + "]}";
+}
+
+TEST_F(PlotTest, ABoundIsNamedWhereThereIsOneAndDrawnAsAMedian) {
+  SKIP_WITHOUT_MATPLOTLIB();
+  const std::string bound = ", \"bound\": {\"rotation_deg\": {\"median\": 1}}";
+  std::string drives = MadeUp("c", {"4pt"}, "");
+  drives.replace(drives.find("\"x\": {"), 3, "\"y\"");  // a row a drive
+  WriteText(Path("a.json"), MadeUp("a", {"4pt"}, bound));
+  WriteText(Path("b.json"), MadeUp("b", {"4pt"}, ""));
+  WriteText(Path("c.json"), drives);
+  ASSERT_EXIT_CODE(
+      RunTool("plot.py", {Path("a.json"), Path("b.json"), Path("c.json"), "--output=" + Path("f")}),
+      0);
+  EXPECT_THAT(ReadText(Path("f/a.svg")), HasSubstr("bound (as a median)"));
+  EXPECT_THAT(ReadText(Path("f/b.svg")), Not(HasSubstr("bound")));
+  EXPECT_THAT(ReadText(Path("f/c.svg")), Not(HasSubstr("bound")));
+}
+
+TEST_F(PlotTest, ASolverLooksTheSameInAllFigures) {
+  SKIP_WITHOUT_MATPLOTLIB();
+  WriteText(Path("a.json"), MadeUp("a", {"4pt-axis"}, ""));
+  WriteText(Path("b.json"), MadeUp("b", {"17pt-li", "6pt-stewenius", "4pt-axis"}, ""));
+  WriteText(Path("c.json"), MadeUp("c", {"9pt-new"}, ""));
+  WriteText(Path("d.json"), MadeUp("d", {"17pt-li", "3pt", "9pt-new"}, ""));
+  ASSERT_EXIT_CODE(RunTool("plot.py", {Path("a.json"), Path("b.json"), Path("c.json"),
+                                       Path("d.json"), "--output=" + Path("f")}),
+                   0);
+  // The colours of a figure of one solver are among those of a figure of more.
+  for (const auto& [one, more] : {std::pair{"f/a.svg", "f/b.svg"}, {"f/c.svg", "f/d.svg"}}) {
+    const std::string svg = ReadText(Path(one)), other = ReadText(Path(more));
+    int colors = 0;
+    for (size_t at = svg.find("stroke: #"); at != std::string::npos;
+         at = svg.find("stroke: #", at + 1)) {
+      ++colors;
+      EXPECT_THAT(other, HasSubstr(svg.substr(at, 15))) << one;
+    }
+    EXPECT_GT(colors, 0);
+  }
+}
+
+TEST_F(PlotTest, SaysInOneLineWhatItCannotDraw) {
+  SKIP_WITHOUT_MATPLOTLIB();
+  const std::vector<std::pair<std::string, const char*>> wrong = {
+      {"{\"format\": \"rigel-claims 1\"}", "not of its format"},
+      {"{\"format\": \"rigel-claims 1\", \"claims\": [{}]}", "not of its format"},
+      {"{\"format\": \"rigel-report 1\", \"results\": [], \"pair_results\": [{}]}", "no results"},
+      {"{\"format\": \"rigel-benchmark 1\", \"solvers\": []}", "no results"},
+      {"{\"format\": \"rigel-benchmark 1\", \"solvers\": 3}", "not of its format"},
+      {"{\"format\": [1]}", "no figure"},
+      {MadeUp("x", {}, ""), "no results"},
+      {MadeUp("../x", {"4pt"}, ""), "no name of an experiment"},
+      {MadeUp("a/b", {"4pt"}, ""), "no name of an experiment"},
+      {std::string(100000, '['), "nested too deeply"}};
+  for (const auto& [text, message] : wrong) {
+    WriteText(Path("wrong.json"), text);
+    const Outcome run = RunTool("plot.py", {Path("wrong.json"), "--output=" + Path("f/g")});
+    EXPECT_EXIT_CODE(run, 1);
+    EXPECT_THAT(run.err, AllOf(HasSubstr(Path("wrong.json")), HasSubstr(message)));
+    EXPECT_EQ(Lines(run.err).size(), 1u) << run.err;
+  }
+  EXPECT_FALSE(fs::exists(Path("f/x.png")));
+}
+
+TEST_F(PlotTest, LeavesOutForeignFilesOfADirectory) {
+  SKIP_WITHOUT_MATPLOTLIB();
+  fs::create_directories(Path("d"));
+  WriteText(Path("d/a.json"), MadeUp("a", {"4pt"}, ""));
+  WriteText(Path("d/foreign.json"), "{\"format\": \"else\"}");
+  WriteText(Path("d/list.json"), "[1]");
+  const Outcome run = RunTool("plot.py", {Path("d"), "--output=" + Path("f")});
+  ASSERT_EXIT_CODE(run, 0);
+  EXPECT_THAT(run.err, AllOf(HasSubstr("left out: " + Path("d/foreign.json")),
+                             HasSubstr("left out: " + Path("d/list.json"))));
+  ExpectFigure(Path("f/a"));
 }
 
 TEST_F(PlotTest, WithoutMatplotlibItSaysSo) {
