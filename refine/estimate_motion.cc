@@ -255,8 +255,10 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
       ransac = result;
       solver = candidate;
     }
-    const double inlier_ratio = result.num_inliers / static_cast<double>(num_matches);
-    if (result.found && !IsDoubtful(pair.prior, *candidate, result.best, inlier_ratio)) break;
+    if (result.found && !IsDoubtful(pair.prior, *candidate, result.best, matches,
+                                    options.ransac.threshold_px)) {
+      break;
+    }
   }
   estimate.ransac_ms = MillisecondsSince(ransac_start);
   estimate.solver = solver->name;

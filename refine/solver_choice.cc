@@ -1,6 +1,7 @@
 #include "rigel/refine/solver_choice.h"
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "rigel/core/angles.h"
@@ -29,8 +30,13 @@ std::vector<const SolverInfo*> SuggestSolvers(const MotionPrior& prior) {
 const SolverInfo& SuggestSolver(const MotionPrior& prior) { return *SuggestSolvers(prior).front(); }
 
 bool IsDoubtful(const MotionPrior& prior, const SolverInfo& solver, const Pose& pose,
-                double inlier_ratio) {
-  if (inlier_ratio < kDoubtfulInlierRatio) return true;
+                const GroupedMatches& matches, double threshold_px) {
+  constexpr double kNoBound = std::numeric_limits<double>::infinity();
+  int inliers = 0, loose_inliers = 0;
+  matches.Score(pose, threshold_px, kNoBound, &inliers);
+  matches.Score(pose, 2.0 * threshold_px, kNoBound, &loose_inliers);
+  if (inliers < kDoubtfulInlierRatio * matches.size()) return true;
+  if (loose_inliers > kDoubtfulGrowth * inliers) return true;
   Alignment alignment;
   std::string error;
   if (solver.prior == PriorKind::kNone || !MakeAlignment(prior, solver.prior, &alignment, &error)) {

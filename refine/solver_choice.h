@@ -9,6 +9,7 @@
 #include "rigel/core/pose.h"
 #include "rigel/core/prior.h"
 #include "rigel/minimal/catalogue.h"
+#include "rigel/minimal/grouped_matches.h"
 
 namespace rigel {
 
@@ -27,11 +28,14 @@ std::vector<const SolverInfo*> SuggestSolvers(const MotionPrior& prior);
 const SolverInfo& SuggestSolver(const MotionPrior& prior);
 
 // Whether a less constrained solver should join: few of the matches agree with `pose`, or it turned
-// away from the solver's prior by more than kDoubtfulPriorDeg.
+// away from the solver's prior by more than kDoubtfulPriorDeg, or the threshold cuts through the
+// residuals: at twice the threshold there are kDoubtfulGrowth times as many inliers. Those of the
+// right motion are nearly all below it, and outliers lie far and wide.
 inline constexpr double kDoubtfulInlierRatio = 0.5;
 inline constexpr double kDoubtfulPriorDeg = 2.0;
+inline constexpr double kDoubtfulGrowth = 1.1;
 bool IsDoubtful(const MotionPrior& prior, const SolverInfo& solver, const Pose& pose,
-                double inlier_ratio);
+                const GroupedMatches& matches, double threshold_px);
 
 }  // namespace rigel
 

@@ -35,17 +35,30 @@ TEST(SolverChoice, TakesTheMostConstrainedThatThePriorAllows) {
   EXPECT_EQ(Names(prior).front(), "4pt");
 }
 
-TEST(SolverChoice, DoubtsFewInliersAndAMotionThatLeavesThePrior) {
-  MotionPrior prior;
-  prior.axis = Eigen::Vector3d::UnitY();
+TEST(SolverChoice, DoubtsFewInliersLooseResidualsAndAMotionThatLeavesThePrior) {
+  constexpr double kThresholdPx = 1.5;
+  SceneOptions scene;
+  scene.num_matches = 400;
+  scene.outlier_share = 0.3;
+  const FramePair pair = ScenePair(scene, 0);
+  const GroupedMatches matches(pair.rig, pair.matches);
   const SolverInfo& axis = *FindSolver("4pt-axis");
-  Pose pose;
-  pose.R = ExpSO3(Eigen::Vector3d(0, 0.3, 0));
-  EXPECT_FALSE(IsDoubtful(prior, axis, pose, 0.7));
-  EXPECT_TRUE(IsDoubtful(prior, axis, pose, 0.4));
-  pose.R = ExpSO3(Eigen::Vector3d(DegToRad(3.0), 0, 0)) * pose.R;
-  EXPECT_TRUE(IsDoubtful(prior, axis, pose, 0.7));
-  EXPECT_FALSE(IsDoubtful(prior, *FindSolver("5pt+1"), pose, 0.7));
+  MotionPrior prior = pair.prior;
+  EXPECT_FALSE(IsDoubtful(prior, axis, *pair.truth, matches, kThresholdPx));
+  // The threshold cuts through the residuals of the right motion.
+  EXPECT_TRUE(IsDoubtful(prior, axis, *pair.truth, matches, 0.5));
+  scene.outlier_share = 0.55;
+  const FramePair bad = ScenePair(scene, 0);
+  EXPECT_TRUE(IsDoubtful(prior, axis, *bad.truth, GroupedMatches(bad.rig, bad.matches),
+                         kThresholdPx));
+  prior.axis = ExpSO3(Eigen::Vector3d(0, 0, 1.5)) * *prior.axis;
+  scene.outlier_share = 0.3;
+  scene.rotation_deg = 5.0;
+  const FramePair turned = ScenePair(scene, 0);
+  const GroupedMatches turned_matches(turned.rig, turned.matches);
+  EXPECT_TRUE(IsDoubtful(prior, axis, *turned.truth, turned_matches, kThresholdPx));
+  EXPECT_FALSE(
+      IsDoubtful(prior, *FindSolver("5pt+1"), *turned.truth, turned_matches, kThresholdPx));
 }
 
 // Every prior off by 20 degrees, turns of 10 degrees, 30 percent of outliers.
