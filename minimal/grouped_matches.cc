@@ -89,8 +89,8 @@ GroupedMatches GroupedMatches::EvenSubset(size_t count) const {
       for (int i = 0; i < 6; ++i) subset.directions_[i * count + next] = directions_[i * n + k];
     }
     if (next == begin) continue;
-    subset.groups_.push_back({group.camera1, group.camera2, static_cast<int>(begin),
-                              static_cast<int>(next - begin)});
+    subset.groups_.push_back(
+        {group.camera1, group.camera2, static_cast<int>(begin), static_cast<int>(next - begin)});
   }
   return subset;
 }

@@ -81,11 +81,9 @@ std::string LengthsText(const Drift& drift) {
 std::string DriftTable(const EstimateReport& report) {
   if (!report.trajectories) return "";
   Table table;
-  table.AddHeader({"", "", "path", "", "KITTI", "[deg/", "step RMS", "", "end", "",
-                   "start"});
-  table.AddHeader(
-      {"drift", "pairs", "[m]", "motions", "[%]", "100 m]", "[mm]", "[deg]", "[%]", "[deg]",
-                   "[%]"});
+  table.AddHeader({"", "", "path", "", "KITTI", "[deg/", "step RMS", "", "end", "", "start"});
+  table.AddHeader({"drift", "pairs", "[m]", "motions", "[%]", "100 m]", "[mm]", "[deg]", "[%]",
+                   "[deg]", "[%]"});
   std::map<std::string, std::vector<size_t>> remarks;  // and the trajectories they are of
   for (size_t k = 0; k < report.trajectories->size(); ++k) {
     const Trajectory& trajectory = (*report.trajectories)[k];

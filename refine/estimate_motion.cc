@@ -255,8 +255,8 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
       ransac = result;
       solver = candidate;
     }
-    if (result.found && !IsDoubtful(pair.prior, *candidate, result.best, matches,
-                                    options.ransac.threshold_px)) {
+    if (result.found &&
+        !IsDoubtful(pair.prior, *candidate, result.best, matches, options.ransac.threshold_px)) {
       break;
     }
   }

@@ -49,8 +49,8 @@ TEST(SolverChoice, DoubtsFewInliersLooseResidualsAndAMotionThatLeavesThePrior) {
   EXPECT_TRUE(IsDoubtful(prior, axis, *pair.truth, matches, 0.5));
   scene.outlier_share = 0.55;
   const FramePair bad = ScenePair(scene, 0);
-  EXPECT_TRUE(IsDoubtful(prior, axis, *bad.truth, GroupedMatches(bad.rig, bad.matches),
-                         kThresholdPx));
+  EXPECT_TRUE(
+      IsDoubtful(prior, axis, *bad.truth, GroupedMatches(bad.rig, bad.matches), kThresholdPx));
   prior.axis = ExpSO3(Eigen::Vector3d(0, 0, 1.5)) * *prior.axis;
   scene.outlier_share = 0.3;
   scene.rotation_deg = 5.0;

@@ -228,7 +228,8 @@ TEST(Flags, PosesHaveTheirOwnMotionsAndFramesNeedPoses) {
     EXPECT_THAT(run.err, AllOf(HasSubstr("the motions are those of --poses"),
                                Not(HasSubstr("/nonexistent"))));
   }
-  ExpectUsageError("simulate", {"--every=2"}, "--every: there are no recorded motions without --poses");
+  ExpectUsageError("simulate", {"--every=2"},
+                   "--every: there are no recorded motions without --poses");
   ExpectUsageError("simulate", {"--every=0"}, "--every: expected at least 1");
   ExpectUsageError("simulate", {"--threads=0"}, "--threads: expected 1 to 1024");
 }
