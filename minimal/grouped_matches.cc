@@ -135,7 +135,7 @@ Eigen::Matrix3d GroupedMatches::Fundamental(const MatchGroup& group, const Pose&
 
 double GroupedMatches::Score(const Pose& pose, double threshold_px, double bound, int* num_inliers,
                              const LossTable* loss) const {
-  *num_inliers = 0;
+  if (num_inliers != nullptr) *num_inliers = 0;
   double sum = 0.0;
   for (const MatchGroup& group : groups_) {
     if (sum > bound) break;
@@ -154,7 +154,7 @@ double GroupedMatches::DecidedParallax(const MatchGroup& group, double threshold
 
 double GroupedMatches::ScoreInFront(const Pose& pose, double threshold_px, double bound,
                                     int* num_inliers, const LossTable* loss) const {
-  *num_inliers = 0;
+  if (num_inliers != nullptr) *num_inliers = 0;
   double sum = 0.0;
   for (const MatchGroup& group : groups_) {
     if (sum > bound) break;

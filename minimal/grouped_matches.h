@@ -60,7 +60,7 @@ class GroupedMatches {
 
   // MSAC score: sum min(r^2, threshold^2) of the Sampson errors, pixels^2. Once it exceeds `bound`
   // the rest is not looked at: the value returned is then above `bound`, but not the score.
-  // With a `loss` table the sum is of that loss.
+  // With a `loss` table the sum is of that loss. `num_inliers` may be null: counting takes time.
   double Score(const Pose& pose, double threshold_px, double bound, int* num_inliers,
                const LossTable* loss = nullptr) const;
 

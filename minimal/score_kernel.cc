@@ -94,9 +94,11 @@ RIGEL_KERNEL_BODY double Sum(const PixelArrays& pixels, const RayArrays* rays, c
     if (rays != nullptr) RejectBehind(*rays, begin, block.size, *motion, t2, e);
     // What is not there counts as an outlier, and then adds nothing.
     for (int i = block.size; i < kBlock; ++i) e[i] = t2;
-    int count = 0;
-    for (int i = 0; i < kBlock; ++i) count += e[i] < t2 ? 1 : 0;
-    inliers += count;
+    if (num_inliers != nullptr) {
+      int count = 0;
+      for (int i = 0; i < kBlock; ++i) count += e[i] < t2 ? 1 : 0;
+      inliers += count;
+    }
     if (loss != nullptr) {
       const double scale = LossTable::kBins / t2;
       for (int i = 0; i < kBlock; ++i) {
@@ -111,7 +113,7 @@ RIGEL_KERNEL_BODY double Sum(const PixelArrays& pixels, const RayArrays* rays, c
     for (int i = 0; i < 8; ++i) e[i] += e[i + 8];
     sum += ((e[0] + e[4]) + (e[2] + e[6])) + ((e[1] + e[5]) + (e[3] + e[7]));
   }
-  *num_inliers += inliers;
+  if (num_inliers != nullptr) *num_inliers += inliers;
   return sum;
 }
 

@@ -52,10 +52,10 @@ struct LossTable {
 LossTable MagsacTable(double t2);
 
 // Adds sum min(r^2, t2) over the matches to `sum` and returns it, where r is the Sampson error in
-// pixels under the row-major centred fundamental matrix F; `num_inliers` grows by the number of
-// matches with r^2 < t2. A match with r = 0/0 (F = 0, an epipole) counts t2. Stops once the sum
-// exceeds `bound`: what is returned below or at it is complete, and as no term is negative the
-// complete sum is never below what is returned.
+// pixels under the row-major centred fundamental matrix F; `num_inliers`, unless null, grows by the
+// number of matches with r^2 < t2. A match with r = 0/0 (F = 0, an epipole) counts t2. Stops once
+// the sum exceeds `bound`: what is returned below or at it is complete, and as no term is negative
+// the complete sum is never below what is returned.
 //
 // With a `loss` table, each term is that loss of r^2 instead.
 double TruncatedSampsonSum(const PixelArrays& pixels, const double F[9], double t2, double bound,

@@ -57,8 +57,7 @@ class FramePairSolver {
   }
   // Does not look at depths, which only add to the score; the sign of t matters little to it.
   double QuickScore(const Model& model, double bound) const {
-    int inliers = 0;
-    return matches_.Score(model, threshold_px_, bound, &inliers, Loss());
+    return matches_.Score(model, threshold_px_, bound, nullptr, Loss());
   }
   double Score(const Model& model, double bound, int* inliers) const {
     return matches_.ScoreInFront(model, threshold_px_, bound, inliers, Loss());
@@ -76,8 +75,7 @@ class FramePairSolver {
   }
 
   double LooseScore(const Model& model, double bound) const {
-    int inliers = 0;
-    return subset_.Score(model, kLooseFactor * threshold_px_, bound, &inliers);
+    return subset_.Score(model, kLooseFactor * threshold_px_, bound, nullptr);
   }
 
   // In two steps, at the loose threshold and at the threshold.

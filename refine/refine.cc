@@ -351,8 +351,7 @@ int Refiner::ChooseReference(const Pose& pose, RotationForm rotation,
     if (!parameterization.Set(rotation, translation, pose, alignment_, rays)) continue;
     Pose projected;
     parameterization.Evaluate(start.data(), &projected, nullptr);
-    int inliers = 0;
-    const double score = matches_.Score(projected, options_.threshold_px, best, &inliers);
+    const double score = matches_.Score(projected, options_.threshold_px, best, nullptr);
     if (score < best) {
       best = score;
       found = candidates[i].second;

@@ -71,10 +71,9 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
   }
   lengths.push_back(std::max(kFar * ShortestLength(matches, pose->R), kStep * length));
 
-  int inliers = 0;
   const auto score_of = [&](const GroupedMatches& scored, const Pose& motion) {
     return scored.ScoreInFront(motion, threshold_px, std::numeric_limits<double>::infinity(),
-                               &inliers);
+                               nullptr);
   };
   const auto optimize = [&](const GroupedMatches& with, SmallEngine* solver, double threshold,
                             Pose* motion) {

@@ -90,8 +90,7 @@ void ResolveSignAndScale(const GroupedMatches& matches, double threshold_px, Pos
       const Eigen::Vector3d t = factor * directions[i];
       Pose candidate = *pose;
       candidate.t = t;
-      int inliers = 0;
-      const double score = matches.ScoreInFront(candidate, threshold_px, best, &inliers);
+      const double score = matches.ScoreInFront(candidate, threshold_px, best, nullptr);
       if (score < best) {
         best = score;
         best_t = t;
