@@ -13,21 +13,29 @@ constexpr double kPriorInliers = 0.1;
 // Counts of matches by the logarithm of their parallax, four bins to a factor of two.
 class Histogram {
  public:
+  static constexpr int kBins = 96;
   static constexpr int kReach = 4;
   static int Bin(double sin2_parallax) {
-    // sin^2 halves twice where the sine halves.
-    const double octaves = 0.5 * std::log2(std::max(sin2_parallax, 1e-14));
-    return std::clamp(kBins - 2 + static_cast<int>(std::floor(4.0 * octaves)), 1, kBins - 2);
+    // floor(4 log2(sine)) = floor(2 log2(sin^2)), sin^2 = m 2^e with m in [1/2, 1).
+    constexpr double kHalfRoot2 = 0.70710678118654752440;
+    int exponent = 0;
+    const double m = std::frexp(std::max(sin2_parallax, 1e-14), &exponent);
+    return std::clamp(kBins - 2 + 2 * (exponent - 1) + (m >= kHalfRoot2 ? 1 : 0), 1, kBins - 2);
   }
   void Add(int bin) { ++counts_[bin]; }
-  // How many there are within a factor of 1.3 of a parallax, as the mean over a wider neighbourhood
-  // tells: down to a half, as the parallax of inliers ends somewhere, and up to `above` bins.
-  double Near(int bin, int above) const {
-    const int first = std::max(bin - kReach, 0);
-    const int last = std::min(bin + above, kBins - 1);
-    int sum = 0;
-    for (int k = first; k <= last; ++k) sum += counts_[k];
-    return 3.0 * sum / (last - first + 1);
+  // How many there are within a factor of 1.3 of the parallax of each bin, as the mean over a wider
+  // neighbourhood tells: down to a half, as the parallax of inliers ends somewhere, and up to `above`
+  // bins.
+  std::array<double, kBins> Near(int above) const {
+    std::array<double, kBins> near;
+    for (int bin = 0; bin < kBins; ++bin) {
+      const int first = std::max(bin - kReach, 0);
+      const int last = std::min(bin + above, kBins - 1);
+      int sum = 0;
+      for (int k = first; k <= last; ++k) sum += counts_[k];
+      near[bin] = 3.0 * sum / (last - first + 1);
+    }
+    return near;
   }
   // sin^2 of the 90th percentile.
   double HighSin2() const {
@@ -39,7 +47,6 @@ class Histogram {
   }
 
  private:
-  static constexpr int kBins = 96;
   std::array<int, kBins> counts_{};
 };
 
@@ -92,13 +99,16 @@ int SelectPlausibleInliers(const GroupedMatches& matches, const Pose& pose, doub
   }
   if (num_beyond == 0) return count;
   const double high2[2] = {within[kIntra].HighSin2(), within[kInter].HighSin2()};
+  const std::array<double, Histogram::kBins> within_near[2] = {within[kIntra].Near(1),
+                                                               within[kInter].Near(1)};
+  const std::array<double, Histogram::kBins> beyond_near[2] = {
+      beyond[kIntra].Near(Histogram::kReach), beyond[kInter].Near(Histogram::kReach)};
   for (const MatchGroup& group : matches.groups()) {
     const int kind = group.camera1 == group.camera2 ? kIntra : kInter;
     for (int k = group.begin; k < group.begin + group.size; ++k) {
       if (!(*inliers)[k]) continue;
-      const double outliers =
-          beyond[kind].Near(bins[k], Histogram::kReach) / (kBandEnd - kBandBegin);
-      const double others = within[kind].Near(bins[k], 1) - 0.5 + kPriorInliers;
+      const double outliers = beyond_near[kind][bins[k]] / (kBandEnd - kBandBegin);
+      const double others = within_near[kind][bins[k]] - 0.5 + kPriorInliers;
       const double limit =
           std::clamp(kMaxOutlierProbability * high2[kind] / std::max(sin2[k], 1e-300),
                      kMinOutlierProbability, kMaxOutlierProbability);
