@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/median.h"
 
 namespace rigel {
 namespace {
@@ -22,9 +23,7 @@ constexpr double kMinTurnSpreads = 3.0;
 double Spread(std::vector<double> residuals) {
   if (residuals.empty()) return kMinSpread;
   for (double& r : residuals) r = std::abs(r);
-  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::nth_element(residuals.begin(), middle, residuals.end());
-  return std::max(1.4826 * *middle, kMinSpread);
+  return std::max(1.4826 * MedianInPlace(&residuals), kMinSpread);
 }
 
 // Cauchy's, 95 percent efficient on normal residuals.

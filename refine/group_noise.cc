@@ -3,29 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rigel/core/median.h"
+
 namespace rigel {
-namespace {
-
-double MedianOf(std::vector<double>* values) {
-  const auto middle = values->begin() + static_cast<long>(values->size() / 2);
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
-}
-
-}  // namespace
 
 std::vector<double> GroupNoiseWeights(const GroupedMatches& matches,
                                       const std::vector<double>& squared_errors,
-                                      const std::vector<char>& inliers) {
+                                      const std::vector<char>& inliers, double median_px) {
   std::vector<double> weights(matches.groups().size(), 1.0);
-  if (matches.groups().size() < 2) return weights;
-  std::vector<double> all, own;
-  all.reserve(inliers.size());
-  for (size_t k = 0; k < inliers.size(); ++k) {
-    if (inliers[k]) all.push_back(squared_errors[k]);
-  }
-  const double median2 = all.empty() ? 0.0 : MedianOf(&all);
-  if (!(median2 > 0.0)) return weights;
+  if (matches.groups().size() < 2 || !(median_px > 0.0)) return weights;
+  std::vector<double> own;
   for (size_t g = 0; g < weights.size(); ++g) {
     const MatchGroup& group = matches.groups()[g];
     own.clear();
@@ -34,7 +21,7 @@ std::vector<double> GroupNoiseWeights(const GroupedMatches& matches,
     }
     if (own.empty()) continue;
     // log of the ratio of the noises.
-    const double ratio = 0.5 * std::log(MedianOf(&own) / median2);
+    const double ratio = 0.5 * std::log(MedianInPlace(&own) / (median_px * median_px));
     const double standard_error = 1.17 / std::sqrt(static_cast<double>(own.size()));
     // Also false for the infinity of a median of zero.
     if (!(std::abs(ratio) > kGroupNoiseSigmas * standard_error) || !std::isfinite(ratio)) continue;

@@ -20,10 +20,10 @@ inline constexpr double kMaxGroupNoiseRatio = 4.0;
 
 // For each group of `matches` the noise of all inliers over its own, from the medians of the
 // inliers' residuals: 1 where they do not differ. `squared_errors` (pixels^2) and `inliers` (0 or
-// 1) are in grouped order.
+// 1) are in grouped order; `median_px` is that of all inliers.
 std::vector<double> GroupNoiseWeights(const GroupedMatches& matches,
                                       const std::vector<double>& squared_errors,
-                                      const std::vector<char>& inliers);
+                                      const std::vector<char>& inliers, double median_px);
 
 }  // namespace rigel
 

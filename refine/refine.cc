@@ -13,6 +13,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/core/frame_pair.h"
+#include "rigel/core/median.h"
 #include "rigel/core/rays.h"
 #include "rigel/minimal/alignment.h"
 #include "rigel/refine/chance.h"
@@ -102,13 +103,6 @@ class PriorCost : public ceres::CostFunction {
   const SharedEvaluation* shared_;
   double unit_;  // the image noise: residuals of matches are in pixels, the prior's in sigmas
 };
-
-// Of at least one value.
-double Median(std::vector<double>* values) {
-  const auto middle = values->begin() + static_cast<long>(values->size() / 2);
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
-}
 
 bool CanBeWeighed(const MotionPrior& prior, PriorKind kind, std::string* error) {
   const auto positive = [](const std::optional<double>& sigma) {
@@ -221,7 +215,7 @@ void Refiner::EstimateNoise() {
   for (size_t k = 0; k < mask_.size(); ++k) {
     if (mask_[k]) errors.push_back(squared_errors_[k]);
   }
-  summary_.median_residual_px = errors.empty() ? -1.0 : std::sqrt(Median(&errors));
+  summary_.median_residual_px = errors.empty() ? -1.0 : std::sqrt(MedianInPlace(&errors));
   // Residuals of as many matches as parameters are zero whatever the noise is. With little
   // redundancy the threshold says more of the noise than they do: it is meant to be three sigma.
   constexpr int kParameters = 6;
@@ -236,7 +230,8 @@ void Refiner::EstimateNoise() {
   match_weights_.assign(mask_.begin(), mask_.end());
   // A noise level that is given is that of all.
   if (!options_.noise_px.has_value()) {
-    const std::vector<double> by_group = GroupNoiseWeights(matches_, squared_errors_, mask_);
+    const std::vector<double> by_group =
+        GroupNoiseWeights(matches_, squared_errors_, mask_, summary_.median_residual_px);
     for (size_t g = 0; g < by_group.size(); ++g) {
       const MatchGroup& group = matches_.groups()[g];
       for (int k = group.begin; k < group.begin + group.size; ++k) match_weights_[k] *= by_group[g];

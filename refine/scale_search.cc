@@ -56,7 +56,7 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
   SmallEngine engine(subset), coarse_engine(coarse);
   std::vector<double> errors;
   std::vector<char> mask;
-  const std::vector<char> all(coarse.size(), 1);
+  const std::vector<double> all(coarse.size(), 1.0);
 
   // Shortest first, in the end one so long that the arms do not matter.
   std::vector<double> lengths;

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/median.h"
 #include "rigel/refine/normal_equations.h"
 
 namespace rigel {
@@ -32,11 +33,6 @@ Matrix6d GroupInformation(const GroupedMatches& matches, const MatchGroup& group
 }
 
 }  // namespace
-
-Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<char>& mask,
-                            const Pose& pose) {
-  return SampsonInformation(matches, std::vector<double>(mask.begin(), mask.end()), pose);
-}
 
 Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<double>& weights,
                             const Pose& pose) {
@@ -73,18 +69,10 @@ double MedianParallaxPx(const GroupedMatches& matches, const MatchGroup& group,
     if (weights[k] != 0.0) parallax.push_back(ParallaxPx(matches, k, pose));
   }
   if (parallax.empty()) return 0.0;
-  const auto middle = parallax.begin() + static_cast<long>(parallax.size() / 2);
-  std::nth_element(parallax.begin(), middle, parallax.end());
-  return *middle;
+  return MedianInPlace(&parallax);
 }
 
 }  // namespace
-
-Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<char>& mask,
-                             const Pose& pose, double noise_px) {
-  return ReliableInformation(matches, std::vector<double>(mask.begin(), mask.end()), pose,
-                             noise_px);
-}
 
 Matrix6d ReliableInformation(const GroupedMatches& matches,
                              const std::vector<double>& match_weights, const Pose& pose,

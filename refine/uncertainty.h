@@ -38,9 +38,6 @@ inline constexpr double kRotationObservableDeg = 10.0;
 // out), at `pose`, over the full six parameters; to be divided by the variance of the image noise.
 Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<double>& weights,
                             const Pose& pose);
-// Of the matches with mask[k] != 0.
-Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<char>& mask,
-                            const Pose& pose);
 
 // Matches near an epipole. Their Sampson error is not linear within the noise: sigma |F_2x2| is the
 // gradient's own error. An epipole that moves onto such a match makes its error vanish, whatever
@@ -58,8 +55,6 @@ void EpipoleWeights(const GroupedMatches& matches, const Pose& pose, double nois
 // EpipoleWeights, and camera pairs whose baseline R s_i + t - s_j is so short that the other
 // matches cannot tell it from zero do not count.
 Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<double>& weights,
-                             const Pose& pose, double noise_px);
-Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<char>& mask,
                              const Pose& pose, double noise_px);
 
 // B (B' information B)^-1 B' for the free directions B = `basis` (6 x k). False, and `covariance`

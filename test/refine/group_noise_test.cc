@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "rigel/core/median.h"
 #include "rigel/refine/refine.h"
 #include "rigel/test/refine/refine_scene.h"
 
@@ -35,7 +36,9 @@ std::vector<double> WeightsAtTruth(const FramePair& pair) {
   const GroupedMatches matches(pair.rig, pair.matches);
   std::vector<double> errors;
   matches.SquaredErrors(*pair.truth, &errors);
-  return GroupNoiseWeights(matches, errors, std::vector<char>(matches.size(), 1));
+  std::vector<double> sorted = errors;
+  return GroupNoiseWeights(matches, errors, std::vector<char>(matches.size(), 1),
+                           std::sqrt(MedianInPlace(&sorted)));
 }
 
 TEST(GroupNoise, WeightsAreInverseToTheNoise) {
@@ -71,13 +74,13 @@ TEST(GroupNoise, NothingIsKnownWithoutInliersOrWithoutNoise) {
   const std::vector<double> ones(matches.groups().size(), 1.0);
   const std::vector<double> errors(matches.size(), 1.0), zeros(matches.size(), 0.0);
   const std::vector<char> all(matches.size(), 1), none(matches.size(), 0);
-  EXPECT_EQ(GroupNoiseWeights(matches, errors, none), ones);
-  EXPECT_EQ(GroupNoiseWeights(matches, zeros, all), ones);
-  EXPECT_EQ(GroupNoiseWeights(GroupedMatches(), {}, {}), std::vector<double>());
+  EXPECT_EQ(GroupNoiseWeights(matches, errors, none, -1.0), ones);
+  EXPECT_EQ(GroupNoiseWeights(matches, zeros, all, 0.0), ones);
+  EXPECT_EQ(GroupNoiseWeights(GroupedMatches(), {}, {}, -1.0), std::vector<double>());
   // A group without any error beside others that have some: no infinite weight.
   std::vector<double> mixed = errors;
   for (int k = 0; k < matches.groups()[0].size; ++k) mixed[k] = 0.0;
-  EXPECT_EQ(GroupNoiseWeights(matches, mixed, all)[0], 1.0);
+  EXPECT_EQ(GroupNoiseWeights(matches, mixed, all, 1.0)[0], 1.0);
 }
 
 // Against the same matches weighed alike, which a stated noise level makes them.

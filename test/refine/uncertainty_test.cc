@@ -24,18 +24,21 @@ std::vector<char> AllOf(const GroupedMatches& matches) {
   return std::vector<char>(matches.size(), 1);
 }
 
-TEST(Uncertainty, InformationIsThatOfTheSampsonErrorsOfTheMask) {
+std::vector<double> OnesOf(const GroupedMatches& matches) {
+  return std::vector<double>(matches.size(), 1.0);
+}
+
+TEST(Uncertainty, InformationIsThatOfTheWeighedSampsonErrors) {
   for (int index = 0; index < 20; ++index) {
     SceneOptions options;
     options.num_matches = 40;
     options.inter_share = 0.5;
     const FramePair pair = ScenePair(options, index);
     const GroupedMatches matches(pair.rig, pair.matches);
-    std::vector<char> mask(matches.size());
-    for (size_t k = 0; k < mask.size(); ++k) mask[k] = k % 3 != 1;
+    std::vector<double> weights(matches.size());
+    for (size_t k = 0; k < weights.size(); ++k) weights[k] = 0.5 * (k % 3);
     Matrix6d expected = Matrix6d::Zero();
     for (int k = 0; k < matches.size(); ++k) {
-      if (!mask[k]) continue;
       Vector6d row;
       for (int c = 0; c < 6; ++c) {
         row(c) = CentralDifference(
@@ -45,9 +48,9 @@ TEST(Uncertainty, InformationIsThatOfTheSampsonErrorsOfTheMask) {
             },
             1e-4)(0);
       }
-      expected += row * row.transpose();
+      expected += weights[k] * weights[k] * row * row.transpose();
     }
-    const Matrix6d information = SampsonInformation(matches, mask, *pair.truth);
+    const Matrix6d information = SampsonInformation(matches, weights, *pair.truth);
     EXPECT_LT((information - expected).norm(), 1e-6 * expected.norm());
   }
 }
@@ -93,7 +96,7 @@ TEST(Uncertainty, CovarianceMatchesTheErrorsOfRefinedMotions) {
 TEST(Uncertainty, CovarianceOnTheSphereHasRankFiveAndNothingAlongT) {
   const FramePair pair = ScenePair(SceneOptions(), 3);
   const GroupedMatches matches(pair.rig, pair.matches);
-  const Matrix6d information = SampsonInformation(matches, AllOf(matches), *pair.truth) / 0.25;
+  const Matrix6d information = SampsonInformation(matches, OnesOf(matches), *pair.truth) / 0.25;
   const MotionBasis basis = FullBasis(*pair.truth, false);
   ASSERT_EQ(basis.cols(), 5);
   EXPECT_LT((basis.transpose() * basis - Eigen::MatrixXd::Identity(5, 5)).norm(), 1e-12);
@@ -148,7 +151,7 @@ TEST(Uncertainty, ScaleSigmaIsInfiniteAtPureTranslationOfIntraCameraMatches) {
     options.num_matches = 100;
     const FramePair pair = ScenePair(options, index);
     const GroupedMatches matches(pair.rig, pair.matches);
-    const Matrix6d information = SampsonInformation(matches, AllOf(matches), *pair.truth) / 0.25;
+    const Matrix6d information = SampsonInformation(matches, OnesOf(matches), *pair.truth) / 0.25;
     EXPECT_EQ(RelativeScaleSigma(information, *pair.truth),
               std::numeric_limits<double>::infinity());
   }
@@ -167,7 +170,7 @@ TEST(Uncertainty, ScaleSigmaTellsInterFromIntraCameraMatches) {
       const FramePair pair = ScenePair(options, index);
       const GroupedMatches matches(pair.rig, pair.matches);
       sigma[inter].push_back(RelativeScaleSigma(
-          SampsonInformation(matches, AllOf(matches), *pair.truth) / 0.25, *pair.truth));
+          SampsonInformation(matches, OnesOf(matches), *pair.truth) / 0.25, *pair.truth));
     }
   }
   // The short way through a Cholesky factor gives what the covariance says.
@@ -176,7 +179,7 @@ TEST(Uncertainty, ScaleSigmaTellsInterFromIntraCameraMatches) {
     options.inter_share = inter;
     const FramePair pair = ScenePair(options, 7);
     const GroupedMatches matches(pair.rig, pair.matches);
-    const Matrix6d information = SampsonInformation(matches, AllOf(matches), *pair.truth) / 0.25;
+    const Matrix6d information = SampsonInformation(matches, OnesOf(matches), *pair.truth) / 0.25;
     Matrix6d covariance;
     ASSERT_TRUE(CovarianceOfBasis(information, FullBasis(*pair.truth, true), &covariance));
     const Eigen::Vector3d t = pair.truth->t;
@@ -296,9 +299,9 @@ TEST(ReliableInformation, IsThatOfTheSampsonErrorsFarFromEpipoles) {
   scene.motion = MotionPattern::kSideways;
   const FramePair pair = ScenePair(scene, 1);
   const GroupedMatches matches(pair.rig, pair.matches);
-  const std::vector<char> mask(matches.size(), 1);
-  const Matrix6d plain = SampsonInformation(matches, mask, *pair.truth) / 0.25;
-  const Matrix6d reliable = ReliableInformation(matches, mask, *pair.truth, 0.5);
+  const std::vector<double> ones = OnesOf(matches);
+  const Matrix6d plain = SampsonInformation(matches, ones, *pair.truth) / 0.25;
+  const Matrix6d reliable = ReliableInformation(matches, ones, *pair.truth, 0.5);
   EXPECT_LT((plain - reliable).norm(), 0.01 * plain.norm());
 }
 
@@ -313,17 +316,17 @@ TEST(ReliableInformation, LeavesOutABaselineThatIsNoise) {
   truth.t = any.rig.cameras[1].s - truth.R * any.rig.cameras[0].s + Eigen::Vector3d(2e-3, 0, 0);
   const FramePair pair = ScenePair(scene, 2, truth);
   const GroupedMatches matches(pair.rig, pair.matches);
-  const std::vector<char> mask(matches.size(), 1);
-  std::vector<char> others = mask;
+  const std::vector<double> ones = OnesOf(matches);
+  std::vector<double> others = ones;
   for (const MatchGroup& group : matches.groups()) {
     if (group.camera1 == 0 && group.camera2 == 1) {
       std::fill(others.begin() + group.begin, others.begin() + group.begin + group.size, 0);
     }
   }
-  const Matrix6d all = ReliableInformation(matches, mask, truth, 0.5);
+  const Matrix6d all = ReliableInformation(matches, ones, truth, 0.5);
   const Matrix6d without = ReliableInformation(matches, others, truth, 0.5);
   EXPECT_LT((all - without).norm(), 1e-9 * without.norm());
-  const Matrix6d plain = SampsonInformation(matches, mask, truth) / 0.25;
+  const Matrix6d plain = SampsonInformation(matches, ones, truth) / 0.25;
   const double plain_t = plain.bottomRightCorner<3, 3>().trace();
   const double reliable_t = all.bottomRightCorner<3, 3>().trace();
   EXPECT_GT(plain_t, 3.0 * reliable_t);
