@@ -3,106 +3,27 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <functional>
 #include <limits>
-#include <memory>
 #include <utility>
-
-#include <ceres/ceres.h>
 
 #include "rigel/core/angles.h"
 #include "rigel/core/frame_pair.h"
 #include "rigel/core/median.h"
 #include "rigel/core/rays.h"
 #include "rigel/minimal/alignment.h"
+#include "rigel/refine/ceres_engine.h"
 #include "rigel/refine/chance.h"
 #include "rigel/refine/group_noise.h"
 #include "rigel/refine/inlier_selection.h"
 #include "rigel/refine/motion_parameterization.h"
 #include "rigel/refine/prior_residuals.h"
-#include "rigel/refine/reprojection_cost.h"
 #include "rigel/refine/scale_search.h"
 #include "rigel/refine/sign_and_scale.h"
 #include "rigel/refine/small_engine.h"
 
 namespace rigel {
 namespace {
-
-// What all residual blocks share at one point: the motion and the linearized camera pairs.
-class SharedEvaluation : public ceres::EvaluationCallback {
- public:
-  SharedEvaluation(const MotionParameterization& parameterization,
-                   const EpipolarResiduals& residuals, const double* parameters)
-      : parameterization_(parameterization), residuals_(residuals), parameters_(parameters) {}
-
-  void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override {
-    if (!new_evaluation_point && (has_jacobians_ || !evaluate_jacobians)) return;
-    parameterization_.Evaluate(parameters_, &pose, &basis);
-    residuals_.Linearize(pose, evaluate_jacobians ? &basis : nullptr, &groups);
-    has_jacobians_ = evaluate_jacobians;
-  }
-
-  Pose pose;
-  MotionBasis basis;
-  std::vector<GroupLinearization> groups;
-
- private:
-  const MotionParameterization& parameterization_;
-  const EpipolarResiduals& residuals_;
-  const double* parameters_;
-  bool has_jacobians_ = false;
-};
-
-class MatchCost : public ceres::CostFunction {
- public:
-  MatchCost(const EpipolarResiduals& residuals, const SharedEvaluation& shared, int k, int size,
-            double weight)
-      : residuals_(&residuals), shared_(&shared), k_(k), size_(size), weight_(weight) {
-    set_num_residuals(1);
-    mutable_parameter_block_sizes()->push_back(size);
-  }
-  bool Evaluate(double const* const*, double* r, double** jacobians) const override {
-    double* jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
-    r[0] = weight_ * residuals_->Evaluate(shared_->groups, k_, size_, jacobian);
-    for (int m = 0; m < size_ && jacobian != nullptr; ++m) jacobian[m] *= weight_;
-    return true;
-  }
-
- private:
-  const EpipolarResiduals* residuals_;
-  const SharedEvaluation* shared_;
-  int k_;
-  int size_;
-  double weight_;
-};
-
-class PriorCost : public ceres::CostFunction {
- public:
-  PriorCost(const PriorResiduals& prior, const SharedEvaluation& shared, double unit, int size)
-      : prior_(&prior), shared_(&shared), unit_(unit) {
-    set_num_residuals(prior.size());
-    mutable_parameter_block_sizes()->push_back(size);
-  }
-  bool Evaluate(double const* const*, double* r, double** jacobians) const override {
-    PriorResiduals::Residuals values;
-    PriorResiduals::Jacobian by_motion;
-    prior_->Evaluate(shared_->pose, &values, &by_motion);
-    for (int i = 0; i < prior_->size(); ++i) r[i] = unit_ * values(i);
-    if (jacobians != nullptr && jacobians[0] != nullptr) {
-      const int n = static_cast<int>(shared_->basis.cols());
-      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> out(
-          jacobians[0], prior_->size(), n);
-      out = unit_ * by_motion * shared_->basis;
-    }
-    return true;
-  }
-
- private:
-  const PriorResiduals* prior_;
-  const SharedEvaluation* shared_;
-  double unit_;  // the image noise: residuals of matches are in pixels, the prior's in sigmas
-};
 
 bool CanBeWeighed(const MotionPrior& prior, PriorKind kind, std::string* error) {
   const auto positive = [](const std::optional<double>& sigma) {
@@ -158,11 +79,6 @@ class Refiner {
   }
   int ChooseReference(const Pose& pose, RotationForm rotation, TranslationForm translation) const;
   bool Solve(bool scale_free, Pose* pose);
-  bool SolveSmall(const MotionParameterization& parameterization, const PriorResiduals& prior,
-                  Pose* pose);
-  bool SolveCeres(const MotionParameterization& parameterization, const PriorResiduals& prior,
-                  Pose* pose);
-  void TakeResult(double initial_cost, double final_cost, int iterations, bool converged);
   bool Iterate(Pose* pose);
   void FillUncertainty(const Pose& pose);
   bool Fail(Termination termination, const std::string& message);
@@ -382,110 +298,31 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
   const bool small = options_.engine == RefineEngine::kAuto &&
                      options_.residual == ResidualKind::kSampson &&
                      options_.form != RefineForm::kBundle;
-  return small ? SolveSmall(parameterization, prior, pose)
-               : SolveCeres(parameterization, prior, pose);
-}
-
-void Refiner::TakeResult(double initial_cost, double final_cost, int iterations, bool converged) {
-  if (summary_.initial_cost < 0) summary_.initial_cost = initial_cost;
-  summary_.final_cost = final_cost;
-  summary_.num_iterations += iterations;
-  summary_.termination = converged ? Termination::kConverged : Termination::kIterationLimit;
-}
-
-bool Refiner::SolveSmall(const MotionParameterization& parameterization,
-                         const PriorResiduals& prior, Pose* pose) {
-  SmallEngineOptions small;
-  small.loss = options_.loss;
-  small.loss_scale = options_.loss_scale_sigmas * noise_px_;
-  small.max_num_iterations = options_.max_num_iterations;
-  // The last step is some 1e-5 standard deviations long.
-  small.tolerance = 1e-12;
   std::array<double, 6> parameters = {0, 0, 0, 0, 0, 0};
-  const SmallEngineSummary result =
-      engine_.Solve(small, parameterization, weights_, prior, noise_px_, parameters.data());
+  LeastSquaresSummary result;
+  if (small) {
+    SmallEngineOptions engine_options;
+    engine_options.loss = options_.loss;
+    engine_options.loss_scale = options_.loss_scale_sigmas * noise_px_;
+    engine_options.max_num_iterations = options_.max_num_iterations;
+    // The last step is some 1e-5 standard deviations long.
+    engine_options.tolerance = 1e-12;
+    result = engine_.Solve(engine_options, parameterization, weights_, prior, noise_px_,
+                           parameters.data());
+  } else {
+    result = SolveWithCeres(options_, matches_, parameterization, weights_, prior, noise_px_, *pose,
+                            parameters.data());
+  }
   Pose refined;
   parameterization.Evaluate(parameters.data(), &refined, nullptr);
   if (!result.usable || !refined.AllFinite()) {
     return Fail(Termination::kDegenerate, "the least-squares solver found no usable solution");
   }
-  TakeResult(result.initial_cost, result.final_cost, result.num_iterations, result.converged);
+  if (summary_.initial_cost < 0) summary_.initial_cost = result.initial_cost;
+  summary_.final_cost = result.final_cost;
+  summary_.num_iterations += result.num_iterations;
+  summary_.termination = result.converged ? Termination::kConverged : Termination::kIterationLimit;
   *pose = refined;
-  return true;
-}
-
-bool Refiner::SolveCeres(const MotionParameterization& parameterization,
-                         const PriorResiduals& prior, Pose* pose) {
-  const int size = parameterization.size();
-  std::array<double, 6> parameters = {0, 0, 0, 0, 0, 0};
-  const EpipolarResiduals residuals(matches_, options_.residual);
-  SharedEvaluation shared(parameterization, residuals, parameters.data());
-  std::deque<MatchCost> costs;
-  PriorCost prior_cost(prior, shared, noise_px_, size);
-  // The algebraic residual is in metres: a scale in pixels means nothing to it.
-  const std::unique_ptr<ceres::LossFunction> loss =
-      options_.residual == ResidualKind::kAlgebraic && options_.form != RefineForm::kBundle
-          ? nullptr
-          : MakeLoss(options_.loss, options_.loss_scale_sigmas * noise_px_);
-
-  ceres::Problem::Options problem_options;
-  problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  problem_options.disable_all_safety_checks = true;
-  problem_options.evaluation_callback = &shared;
-  ceres::Problem problem(problem_options);
-  const bool bundle = options_.form == RefineForm::kBundle;
-  std::deque<ReprojectionCost> reprojections;
-  // In one piece: Ceres orders the blocks of a group by their addresses.
-  std::vector<ReprojectionCost::Point> points;
-  if (bundle) points.reserve(mask_.size());
-  for (int k = 0; k < matches_.size(); ++k) {
-    if (!mask_[k]) continue;
-    if (bundle) {
-      const Match& match = matches_.matches()[k];
-      points.push_back(ReprojectionCost::Triangulate(matches_.rig(), match, *pose));
-      reprojections.emplace_back(matches_.rig(), match, shared.pose, shared.basis, size,
-                                 weights_[k]);
-      problem.AddResidualBlock(&reprojections.back(), loss.get(), parameters.data(),
-                               points.back().data());
-    } else {
-      costs.emplace_back(residuals, shared, k, size, weights_[k]);
-      problem.AddResidualBlock(&costs.back(), loss.get(), parameters.data());
-    }
-  }
-  if (prior.size() > 0) problem.AddResidualBlock(&prior_cost, nullptr, parameters.data());
-
-  ceres::Solver::Options solver_options;
-  solver_options.linear_solver_type = bundle ? ceres::DENSE_SCHUR : ceres::DENSE_NORMAL_CHOLESKY;
-  if (bundle) {
-    // The points are eliminated first.
-    auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-    for (ReprojectionCost::Point& point : points) ordering->AddElementToGroup(point.data(), 0);
-    ordering->AddElementToGroup(parameters.data(), 1);
-    solver_options.linear_solver_ordering = ordering;
-  }
-  solver_options.logging_type = ceres::SILENT;
-  solver_options.minimizer_progress_to_stdout = false;
-  solver_options.num_threads = 1;
-  solver_options.max_num_iterations = options_.max_num_iterations;
-  solver_options.function_tolerance = 1e-10;
-  solver_options.parameter_tolerance = 1e-12;
-  solver_options.gradient_tolerance = 1e-14;
-  // Undetermined points must not make a step fail: Ceres would log that.
-  solver_options.min_lm_diagonal = 1e-4;
-  solver_options.max_trust_region_radius = 1e6;
-  ceres::Solver::Summary ceres_summary;
-  ceres::Solve(solver_options, &problem, &ceres_summary);
-
-  Pose result;
-  parameterization.Evaluate(parameters.data(), &result, nullptr);
-  if (!ceres_summary.IsSolutionUsable() || !result.AllFinite()) {
-    return Fail(Termination::kDegenerate, "the least-squares solver found no usable solution");
-  }
-  TakeResult(ceres_summary.initial_cost, ceres_summary.final_cost,
-             static_cast<int>(ceres_summary.iterations.size()),
-             ceres_summary.termination_type != ceres::NO_CONVERGENCE);
-  *pose = result;
   return true;
 }
 

@@ -115,15 +115,15 @@ void PackedMatches::Set(const GroupedMatches& matches, const std::vector<double>
   }
 }
 
-SmallEngineSummary SmallEngine::Solve(const SmallEngineOptions& options,
-                                      const MotionParameterization& parameterization,
-                                      const std::vector<double>& weights,
-                                      const PriorResiduals& prior, double prior_unit,
-                                      double* parameters) {
+LeastSquaresSummary SmallEngine::Solve(const SmallEngineOptions& options,
+                                       const MotionParameterization& parameterization,
+                                       const std::vector<double>& weights,
+                                       const PriorResiduals& prior, double prior_unit,
+                                       double* parameters) {
   constexpr double kInitialDamping = 1e-4;
   constexpr double kMaxDamping = 1e16;
   constexpr double kMinStep = 1e-14;  // radians and metres
-  SmallEngineSummary summary;
+  LeastSquaresSummary summary;
   num_iterations_ = 0;
   const int n = parameterization.size();
   Eigen::Map<ParameterVector> best(parameters, n);
@@ -182,7 +182,7 @@ bool SmallEngine::Minimize(const SmallEngineOptions& options, const std::vector<
   }
   weights_.assign(mask.begin(), mask.end());
   double parameters[6] = {0, 0, 0, 0, 0, 0};
-  const SmallEngineSummary summary =
+  const LeastSquaresSummary summary =
       Solve(options, parameterization, weights_, PriorResiduals(), 1.0, parameters);
   if (!summary.usable || !(summary.final_cost < summary.initial_cost)) return false;
   Pose result;

@@ -38,7 +38,7 @@ struct PackedMatches {
   std::vector<PixelArrays> groups;  // into the arrays above
 };
 
-struct SmallEngineSummary {
+struct LeastSquaresSummary {
   bool usable = false;  // finite from the start to the end
   bool converged = false;
   int num_iterations = 0;
@@ -57,10 +57,10 @@ class SmallEngine {
   // Minimizes over `parameters` (in: the start, out: the best found), parameterization.size() of
   // them. `weights` multiply the residuals (grouped order; 0 leaves a match out). The residuals of
   // `prior` at the motion are multiplied by `prior_unit`, pixels, and take no loss.
-  SmallEngineSummary Solve(const SmallEngineOptions& options,
-                           const MotionParameterization& parameterization,
-                           const std::vector<double>& weights, const PriorResiduals& prior,
-                           double prior_unit, double* parameters);
+  LeastSquaresSummary Solve(const SmallEngineOptions& options,
+                            const MotionParameterization& parameterization,
+                            const std::vector<double>& weights, const PriorResiduals& prior,
+                            double prior_unit, double* parameters);
 
   // Over rotation and translation and the matches with mask[k] != 0 (grouped order; as many as
   // the matches). False, and `pose` unchanged, if no step lowers the cost or the result is not
