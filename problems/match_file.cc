@@ -1,5 +1,5 @@
-// Reader and writer of match files. The reader goes once over the whole text and keeps no copy
-// of it: a line is split into views, and numbers are converted in place by std::from_chars.
+// Reader of match files. It goes once over the whole text and keeps no copy of it: a
+// line is split into views, and numbers are converted in place by std::from_chars.
 #include "rigel/problems/match_file.h"
 
 #include <algorithm>
@@ -19,63 +19,20 @@
 #include <utility>
 
 #include "rigel/core/angles.h"
-#include "rigel/problems/whole_file.h"
+#include "rigel/problems/match_file_words.h"
 
 namespace rigel {
 namespace {
 
+using namespace match_file;
+
 // Directions and quaternions must have unit length to within this.
 constexpr double kMaxNormError = 1e-3;
 
-constexpr std::string_view kSuffix = ".matches";
 constexpr std::string_view kRowUsage = "I U V J U2 V2 SCORE";
 constexpr size_t kRowColumns = 7;
 // "0 0 0 0 0 0 0\n": bounds what `matches N` can truthfully announce.
 constexpr size_t kMinRowBytes = 14;
-
-enum KeywordId {
-  kFormat,
-  kCamera,
-  kTime,
-  kTruth,
-  kGravity1,
-  kGravity2,
-  kGravitySigma,
-  kAxis,
-  kAxisSigma,
-  kNormal,
-  kNormalSigma,
-  kDistance,
-  kNoise,
-  kSequence,
-  kMatches,
-  kNumKeywords,
-};
-
-struct Keyword {
-  std::string_view name;
-  std::string_view usage;  // the whole line; its words name the columns in messages
-  size_t columns;
-};
-
-constexpr size_t kMaxColumns = 16;
-constexpr std::array<Keyword, kNumKeywords> kKeywords = {{
-    {"format", "format rigmatch 1", 3},
-    {"camera", "camera K pinhole FX FY CX CY WIDTH HEIGHT QW QX QY QZ SX SY SZ", 16},
-    {"time", "time T1 T2", 3},
-    {"truth", "truth QW QX QY QZ TX TY TZ", 8},
-    {"gravity1", "gravity1 GX GY GZ", 4},
-    {"gravity2", "gravity2 GX GY GZ", 4},
-    {"gravity_sigma_deg", "gravity_sigma_deg S", 2},
-    {"axis", "axis NX NY NZ", 4},
-    {"axis_sigma_deg", "axis_sigma_deg S", 2},
-    {"normal", "normal NX NY NZ", 4},
-    {"normal_sigma_deg", "normal_sigma_deg S", 2},
-    {"distance", "distance D SIGMA", 3},
-    {"noise_px", "noise_px S", 2},
-    {"sequence", "sequence NAME", 2},
-    {"matches", "matches N", 2},
-}};
 
 int FindKeyword(std::string_view word) {
   for (int id = 0; id < kNumKeywords; ++id) {
@@ -87,45 +44,8 @@ int FindKeyword(std::string_view word) {
 // Carriage returns count as blanks, which accepts CRLF line ends.
 bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-bool IsControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
-
-void AppendHex(char c, std::string* out) {
-  constexpr char kDigits[] = "0123456789abcdef";
-  const auto byte = static_cast<unsigned char>(c);
-  *out += "\\x";
-  *out += kDigits[byte >> 4];
-  *out += kDigits[byte & 15];
-}
-
-// A word of the file for a message: quoted, short, and printable even if the file is rubbish.
-std::string Quote(std::string_view word) {
-  constexpr size_t kMaxLength = 30;
-  std::string out = "'";
-  for (const char c : word) {
-    if (out.size() > kMaxLength) {
-      out += "...";
-      break;
-    }
-    if (IsControl(c) || (c & 0x80)) {
-      AppendHex(c, &out);
-    } else {
-      out += c;
-    }
-  }
-  return out + "'";
-}
-
 std::string SystemMessage(int error_number) {
   return std::generic_category().message(error_number);
-}
-
-bool ParseNumber(std::string_view word, double* value) {
-  const char* begin = word.data();
-  const char* const end = begin + word.size();
-  // from_chars takes no plus sign, though printf("%+g") writes one.
-  if (word.size() > 1 && word[0] == '+' && word[1] != '-') ++begin;
-  const auto [stop, status] = std::from_chars(begin, end, *value);
-  return status == std::errc() && stop == end && std::isfinite(*value);
 }
 
 bool ParseInteger(std::string_view word, int min, int* value) {
@@ -550,71 +470,6 @@ class Parser {
   int num_matches_ = 0;
 };
 
-// Text of a match file, line by line.
-class Formatter {
- public:
-  explicit Formatter(size_t num_bytes) { text_.reserve(num_bytes); }
-
-  Formatter& Word(std::string_view word) {
-    if (!text_.empty() && text_.back() != '\n') text_ += ' ';
-    text_ += word;
-    return *this;
-  }
-
-  template <typename Value>
-  Formatter& Number(Value value) {
-    std::array<char, 32> buffer;  // the shortest form of a double has at most 24 characters
-    const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-    return Word({buffer.data(), size_t(result.ptr - buffer.data())});
-  }
-
-  template <int kSize>
-  Formatter& Vector(const Eigen::Matrix<double, kSize, 1>& v) {
-    for (int k = 0; k < kSize; ++k) Number(v[k]);
-    return *this;
-  }
-
-  Formatter& Quaternion(const Eigen::Matrix3d& R) {
-    Pose pose;
-    pose.R = R;
-    const Eigen::Quaterniond q = pose.Quaternion();
-    return Number(q.w()).Number(q.x()).Number(q.y()).Number(q.z());
-  }
-
-  // Writes degrees. Multiplying back and forth by pi/180 loses an ulp now and then, so look for
-  // the plainest degrees that read back as the same radians. About a tenth of all doubles are no
-  // double's radians; those move by one ulp.
-  Formatter& SigmaDeg(double radians) {
-    const double degrees = RadToDeg(radians);
-    const auto is_exact = [radians](double d) { return DegToRad(d) == radians; };
-    std::array<char, 64> buffer;
-    for (int digits = 1; digits <= 15; ++digits) {
-      const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), degrees,
-                                        std::chars_format::general, digits);
-      const std::string_view word(buffer.data(), result.ptr - buffer.data());
-      double rounded;
-      if (ParseNumber(word, &rounded) && is_exact(rounded)) return Number(rounded);
-    }
-    const double inf = std::numeric_limits<double>::infinity();
-    double below = degrees;
-    double above = degrees;
-    for (int k = 0; k < 4; ++k) {
-      if (is_exact(below)) return Number(below);
-      if (is_exact(above)) return Number(above);
-      below = std::nextafter(below, -inf);
-      above = std::nextafter(above, inf);
-    }
-    return Number(degrees);
-  }
-
-  void EndLine() { text_ += '\n'; }
-
-  std::string Take() { return std::move(text_); }
-
- private:
-  std::string text_;
-};
-
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
@@ -656,35 +511,6 @@ bool ReadWholeFile(const std::string& path, Buffer* text, std::string* error) {
   return true;
 }
 
-// Appends the match files of a directory.
-void ListDirectory(const std::string& directory, std::vector<std::string>* paths,
-                   std::vector<std::string>* errors) {
-  namespace fs = std::filesystem;
-  std::vector<std::string> names;
-  std::error_code status;
-  fs::directory_iterator entry(directory, status);
-  for (; !status && entry != fs::directory_iterator(); entry.increment(status)) {
-    std::string name = entry->path().filename().string();
-    std::error_code ignored;
-    if (name.size() > kSuffix.size() &&
-        std::string_view(name).substr(name.size() - kSuffix.size()) == kSuffix &&
-        !entry->is_directory(ignored)) {
-      names.push_back(std::move(name));
-    }
-  }
-  if (status) {
-    errors->push_back(PrintablePath(directory) + ": cannot be listed: " + status.message());
-    return;
-  }
-  if (names.empty()) {
-    errors->push_back(PrintablePath(directory) + ": no " + std::string(kSuffix) +
-                      " files in this directory");
-    return;
-  }
-  std::sort(names.begin(), names.end());
-  for (const std::string& name : names) paths->push_back((fs::path(directory) / name).string());
-}
-
 }  // namespace
 
 bool ParseMatches(std::string_view text, const std::string& name, FramePair* pair,
@@ -696,105 +522,6 @@ bool ReadMatchFile(const std::string& path, FramePair* pair, std::string* error)
   Buffer text(0);
   return ReadWholeFile(path, &text, error) &&
          ParseMatches({text.data.get(), text.size}, path, pair, error);
-}
-
-std::string FormatMatches(const FramePair& pair) {
-  constexpr size_t kHeaderBytes = 4096;
-  constexpr size_t kUsualRowBytes = 100;
-  Formatter f(kHeaderBytes + kUsualRowBytes * pair.matches.size());
-  const auto direction = [&f](KeywordId id, const std::optional<Eigen::Vector3d>& v) {
-    if (v) f.Word(kKeywords[id].name).Vector(*v).EndLine();
-  };
-  const auto sigma = [&f](KeywordId id, const std::optional<double>& radians) {
-    if (radians) f.Word(kKeywords[id].name).SigmaDeg(*radians).EndLine();
-  };
-
-  f.Word(kKeywords[kFormat].usage).EndLine();
-  for (int k = 0; k < pair.rig.size(); ++k) {
-    const RigCamera& camera = pair.rig.cameras[k];
-    const PinholeCamera& c = camera.intrinsics;
-    f.Word(kKeywords[kCamera].name).Number(k).Word("pinhole");
-    f.Number(c.fx).Number(c.fy).Number(c.cx).Number(c.cy).Number(c.width).Number(c.height);
-    f.Quaternion(camera.Q).Vector(camera.s).EndLine();
-  }
-  if (pair.time1 && pair.time2) {
-    f.Word(kKeywords[kTime].name).Number(*pair.time1).Number(*pair.time2).EndLine();
-  }
-  if (pair.truth) {
-    f.Word(kKeywords[kTruth].name).Quaternion(pair.truth->R).Vector(pair.truth->t).EndLine();
-  }
-  const MotionPrior& prior = pair.prior;
-  direction(kGravity1, prior.gravity1);
-  direction(kGravity2, prior.gravity2);
-  sigma(kGravitySigma, prior.gravity_sigma);
-  direction(kAxis, prior.axis);
-  sigma(kAxisSigma, prior.axis_sigma);
-  direction(kNormal, prior.normal);
-  sigma(kNormalSigma, prior.normal_sigma);
-  if (prior.distance) {
-    f.Word(kKeywords[kDistance].name).Number(*prior.distance).Number(prior.distance_sigma);
-    f.EndLine();
-  }
-  if (pair.noise_px) f.Word(kKeywords[kNoise].name).Number(*pair.noise_px).EndLine();
-  if (!pair.sequence.empty()) f.Word(kKeywords[kSequence].name).Word(pair.sequence).EndLine();
-  f.Word(kKeywords[kMatches].name).Number(pair.matches.size()).EndLine();
-  for (const Match& m : pair.matches) {
-    f.Number(m.camera1).Vector(m.pixel1).Number(m.camera2).Vector(m.pixel2).Number(m.score);
-    f.EndLine();
-  }
-  return f.Take();
-}
-
-bool WriteMatchFile(const std::string& path, const FramePair& pair, std::string* error) {
-  const std::string text = FormatMatches(pair);
-  // Reading it back costs little and finds everything a reader would reject.
-  const std::string refusal = path + ": not written, it could not be read back";
-  FramePair read;
-  if (!ParseMatches(text, refusal, &read, error)) return false;
-  if (read.time1 != pair.time1 || read.time2 != pair.time2) {
-    *error = PrintablePath(refusal) + ": one time is missing, expected both or none";
-    return false;
-  }
-  if (read.sequence != pair.sequence) {
-    *error = PrintablePath(refusal) + ": sequence " + Quote(pair.sequence) +
-             ", expected a name without blanks";
-    return false;
-  }
-  return WriteWholeFile(path, text, error);
-}
-
-std::string PrintablePath(const std::string& path) {
-  std::string out;
-  for (const char c : path) {
-    if (IsControl(c)) {
-      AppendHex(c, &out);
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
-std::vector<std::string> ListMatchFiles(const std::string& comma_separated,
-                                        std::vector<std::string>* errors) {
-  namespace fs = std::filesystem;
-  std::vector<std::string> paths;
-  for (size_t begin = 0; begin <= comma_separated.size();) {
-    const size_t comma = std::min(comma_separated.find(',', begin), comma_separated.size());
-    const std::string item = comma_separated.substr(begin, comma - begin);
-    begin = comma + 1;
-    if (item.empty()) continue;
-    std::error_code code;
-    const fs::file_status status = fs::status(item, code);
-    if (!fs::exists(status)) {
-      errors->push_back(PrintablePath(item) + ": cannot be opened: " + code.message());
-    } else if (fs::is_directory(status)) {
-      ListDirectory(item, &paths, errors);
-    } else {
-      paths.push_back(item);
-    }
-  }
-  return paths;
 }
 
 }  // namespace rigel
