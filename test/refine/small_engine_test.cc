@@ -31,6 +31,32 @@ double Cost(const EpipolarResiduals& residuals, LossKind kind, double scale, con
   return sum;
 }
 
+TEST(PackedMatches, HoldTheMatchesOfWeightAboveZeroGroupByGroup) {
+  SceneOptions scene;
+  scene.inter_share = 0.5;
+  scene.num_matches = 50;
+  const FramePair pair = ScenePair(scene, 0);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  std::vector<double> weights(matches.size());
+  for (size_t k = 0; k < weights.size(); ++k) weights[k] = 0.5 * (k % 3);
+  PackedMatches packed;
+  packed.Set(matches, weights);
+  ASSERT_EQ(packed.groups.size(), matches.groups().size());
+  int n = 0;
+  for (size_t g = 0; g < packed.groups.size(); ++g) {
+    const MatchGroup& group = matches.groups()[g];
+    const PixelArrays pixels = matches.Pixels(group);
+    int in_group = 0;
+    for (int k = 0; k < group.size; ++k) {
+      if (weights[group.begin + k] == 0.0) continue;
+      EXPECT_EQ(packed.weights[n++], weights[group.begin + k]);
+      EXPECT_EQ(packed.groups[g].x1[in_group], pixels.x1[k]);
+      EXPECT_EQ(packed.groups[g].y2[in_group++], pixels.y2[k]);
+    }
+    EXPECT_EQ(packed.groups[g].size, in_group);
+  }
+}
+
 TEST(SmallEngine, ReachesTheMinimumOfRefine) {
   for (const LossKind kind :
        {LossKind::kNone, LossKind::kHuber, LossKind::kCauchy, LossKind::kTukey}) {
