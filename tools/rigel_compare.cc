@@ -117,16 +117,10 @@ int Merge() {
 }
 
 int Run() {
-  if (SameOutputFile(FLAGS_json, FLAGS_csv)) {
-    return UsageError("--csv=" + FLAGS_csv +
-                      ": the JSON goes to this file already; name another for one of them");
-  }
-  if (FLAGS_json == "-" && FLAGS_csv == "-") {
-    return UsageError("--csv=-: stdout has the JSON already; name a file for one of them");
-  }
+  std::string error;
+  if (!OutputsDiffer({{"json", FLAGS_json}, {"csv", FLAGS_csv}}, &error)) return UsageError(error);
   if (!FLAGS_merge.empty()) return Merge();
   ComparisonOptions options;
-  std::string error;
   if (!OptionsFromFlags(&options, &error)) return UsageError(error);
   options.solvers = SplitCommas(FLAGS_solvers);
   if (!FLAGS_solvers.empty() && options.solvers.empty()) {

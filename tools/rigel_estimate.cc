@@ -58,7 +58,7 @@ constexpr char kUsage[] =
     "trajectories.\n";
 
 // Flags of outputs, with their files.
-std::vector<std::pair<const char*, std::string>> Outputs() {
+std::vector<OutputFlag> Outputs() {
   return {{"json", FLAGS_json},
           {"csv", FLAGS_csv},
           {"g2o", FLAGS_g2o},
@@ -70,28 +70,6 @@ bool StdoutIsAskedFor() {
   const auto outputs = Outputs();
   return std::any_of(outputs.begin(), outputs.end(),
                      [](const auto& output) { return output.second == "-"; });
-}
-
-// Each output has a file of its own, and one at most stdout. False with a message if not.
-bool OutputsDiffer(std::string* error) {
-  const auto outputs = Outputs();
-  for (size_t k = 0; k < outputs.size(); ++k) {
-    const auto& [flag, file] = outputs[k];
-    for (size_t i = 0; i < k; ++i) {
-      const auto& [first_flag, first_file] = outputs[i];
-      if (file == "-" && first_file == "-") {
-        *error = "--" + std::string(flag) + "=-: stdout has that of --" + first_flag +
-                 " already; name a file for one of them";
-        return false;
-      }
-      if (SameOutputFile(first_file, file)) {
-        *error = "--" + std::string(flag) + "=" + file + ": that of --" + first_flag +
-                 " goes to this file already; name another for one of them";
-        return false;
-      }
-    }
-  }
-  return true;
 }
 
 bool Chained() {
@@ -176,7 +154,7 @@ int Run() {
     return UsageError("--solver=" + FLAGS_solver + ": expected one of " + SolverNamesWithAuto());
   }
   if (!CanRefine(estimate, FLAGS_solver, &error)) return UsageError(error);
-  if (!OutputsDiffer(&error)) return UsageError(error);
+  if (!OutputsDiffer(Outputs(), &error)) return UsageError(error);
   if (!FLAGS_g2o.empty() && !estimate.refine_motion) {
     return UsageError("--g2o: without a refinement (--refine=none) a motion has no information");
   }

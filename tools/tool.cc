@@ -173,6 +173,26 @@ bool SameOutputFile(const std::string& path1, const std::string& path2) {
   return !real1.empty() && real1 == real2;
 }
 
+bool OutputsDiffer(const std::vector<OutputFlag>& outputs, std::string* error) {
+  for (size_t k = 0; k < outputs.size(); ++k) {
+    const auto& [flag, file] = outputs[k];
+    for (size_t i = 0; i < k; ++i) {
+      const auto& [first_flag, first_file] = outputs[i];
+      if (file == "-" && first_file == "-") {
+        *error = "--" + std::string(flag) + "=-: stdout has that of --" + first_flag +
+                 " already; name a file for one of them";
+        return false;
+      }
+      if (SameOutputFile(first_file, file)) {
+        *error = "--" + std::string(flag) + "=" + file + ": that of --" + first_flag +
+                 " goes to this file already; name another for one of them";
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 bool ReadInput(const std::string& path, std::string* text) {
   std::FILE* file = std::fopen(path.c_str(), "rb");
   if (file == nullptr) {

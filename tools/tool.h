@@ -43,6 +43,12 @@ bool WriteOutput(const std::string& path, const std::string& text);
 // none.
 bool SameOutputFile(const std::string& path1, const std::string& path2);
 
+// A flag that names an output, without dashes, and its value.
+using OutputFlag = std::pair<std::string, std::string>;
+
+// Each output has a file of its own, and one at most stdout. False with a message if not.
+bool OutputsDiffer(const std::vector<OutputFlag>& outputs, std::string* error);
+
 // Reads a whole file. False with a message on stderr if that fails.
 bool ReadInput(const std::string& path, std::string* text);
 

@@ -313,6 +313,8 @@ TEST_F(Outputs, OnlyOneReportFitsOnStdout) {
     ExpectUsageError(tool, {"--json=-", "--csv=-"}, "--csv=-");
   }
   ExpectUsageError("estimate", {"--json=-", "--g2o=-"}, "--g2o=-: stdout has that of --json");
+  ExpectUsageError("compare", {"--json=-", "--csv=-"}, "--csv=-: stdout has that of --json");
+  ExpectUsageError("compare", {"--json=f", "--csv=./f"}, "--csv=./f: that of --json goes to");
   ExpectUsageError("estimate", {"--csv=-", "--g2o=-"}, "--g2o=-: stdout has that of --csv");
 }
 
