@@ -24,8 +24,8 @@ class Histogram {
   }
   void Add(int bin) { ++counts_[bin]; }
   // How many there are within a factor of 1.3 of the parallax of each bin, as the mean over a wider
-  // neighbourhood tells: down to a half, as the parallax of inliers ends somewhere, and up to `above`
-  // bins.
+  // neighbourhood tells: down to a half, as the parallax of inliers ends somewhere, and up to
+  // `above` bins.
   std::array<double, kBins> Near(int above) const {
     std::array<double, kBins> near;
     for (int bin = 0; bin < kBins; ++bin) {
