@@ -29,6 +29,11 @@ struct Alignment {
     return B0 + cos_a * Bc + sin_a * Bs;
   }
 
+  // A2' t: the translation t of the aligned frames in f2.
+  Eigen::Vector3d ToFrame2(double tx, double ty, double tz) const {
+    return tx * A2.row(0).transpose() + ty * A2.row(1).transpose() + tz * A2.row(2).transpose();
+  }
+
   // The angle a of the member of the family nearest to R.
   double NearestAngle(const Eigen::Matrix3d& R) const;
 

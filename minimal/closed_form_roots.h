@@ -9,22 +9,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rigel/minimal/newton_lanes.h"
+
 namespace rigel::polynomial_internal {
 
 inline constexpr double kSqrt3 = 1.73205080756887729353;
 inline constexpr int kUndecided = -1;
 
-// cos(acos(r) / 3) for r in [-1, 1], within 4e-9: with u = cos(acos(r) / 2) it is cos(2/3 acos(u)),
-// which is smooth on [0, 1]; Chebyshev interpolation of degree 8.
-inline double CosOfThird(double r) {
+// Cosine and sine of acos(r) / 3 for r in [-1, 1], within 6e-9. With u = cos(acos(r) / 2) they are
+// cos(2/3 acos(u)) and sin(2/3 acos(u)) = sqrt(1 - u^2) times a function of u, both smooth on
+// [0, 1]: Chebyshev interpolation of degrees 8 and 9.
+inline void CosAndSinOfThird(double r, double* cosine, double* sine) {
   const double u = std::sqrt(0.5 * (1.0 + r));
+  const double sine_of_half = std::sqrt(0.5 * (1.0 - r));
   const double u2 = u * u;
   const double u4 = u2 * u2;
-  return (0.500000003733184 + 0.5773496613984087 * u) +
-         u2 * (-0.1110944927672061 + 0.05327935084772565 * u) +
-         u4 * ((-0.03192541213689045 + 0.019600320923119502 * u) +
-               u2 * (-0.010237508312381276 + 0.0036541195584302638 * u) -
-               u4 * 0.0006260453210416017);
+  *cosine =
+      ((0.500000003733184 + 0.5773496613984087 * u) +
+       u2 * (-0.1110944927672062 + 0.05327935084772565 * u)) +
+      u4 * ((-0.03192541213689045 + 0.019600320923119502 * u) +
+            u2 * (-0.010237508312381276 + 0.0036541195584302638 * u) - u4 * 0.0006260453210416017);
+  *sine = sine_of_half * (((0.8660253981308746 - 0.33333219731284364 * u) +
+                           u2 * (0.24052423201262865 - 0.19701720924169042 * u)) +
+                          u4 * ((0.16792523920306976 - 0.13867390493998213 * u) +
+                                u2 * (0.09997340370831578 - 0.054957087077968925 * u) +
+                                u4 * (0.01938336009625346 - 0.0031845708330365597 * u)));
 }
 
 // Newton's method on p of degree N from `count` <= N starts at once, as the steps of one depend on
@@ -34,26 +43,13 @@ inline bool NewtonFromGoodStarts(const double* c, int count, double* x) {
   constexpr int kMaxSteps = 5;
   constexpr double kConverged = 1e-9;  // the next step is of the order of its square
   constexpr double kDistinct = 1e-6;
-  constexpr int kLanes = (N + 1) / 2 * 2;
-  double lane[kLanes];
-  for (int l = 0; l < kLanes; ++l) lane[l] = l < count ? x[l] : x[0];
+  const PolynomialInLanes<N> p(c);
+  Lanes<N> lane = LanesOf<N>(x, count);
   bool converged = false;
   for (int n = 0; n < kMaxSteps && !converged; ++n) {
-    double value[kLanes], slope[kLanes], step[kLanes];
-    for (int l = 0; l < kLanes; ++l) {
-      value[l] = c[N] * lane[l] + c[N - 1];
-      slope[l] = c[N];
-    }
-    for (int k = N - 2; k >= 0; --k) {
-      for (int l = 0; l < kLanes; ++l) slope[l] = slope[l] * lane[l] + value[l];
-      for (int l = 0; l < kLanes; ++l) value[l] = value[l] * lane[l] + c[k];
-    }
-    for (int l = 0; l < kLanes; ++l) step[l] = value[l] / slope[l];
-    for (int l = 0; l < kLanes; ++l) lane[l] -= step[l];
-    converged = true;
-    for (int l = 0; l < kLanes; ++l) {
-      converged &= std::abs(step[l]) <= kConverged * std::abs(lane[l]);
-    }
+    const Lanes<N> step = p.NewtonStep(lane);
+    lane -= step;
+    converged = (step.abs() <= kConverged * lane.abs()).all();
   }
   if (!converged) return false;
   for (int i = 0; i < count; ++i) {
@@ -82,14 +78,15 @@ inline int QuarticStarts(const double* c, double* x) {
   // q^2.
   const double third = 2.0 / 3.0 * p;
   const double linear = p * p - 4.0 * r;
-  const double Q = third * third - linear / 3.0;
+  const double Q = third * third - linear * (1.0 / 3.0);
   const double R = third * (third * third - 0.5 * linear) - 0.5 * q * q;
   const double Q3 = Q * Q * Q;
   double s;
   if (R * R < Q3) {
     const double root_Q = std::sqrt(Q);
-    const double cosine = CosOfThird(R / (Q * root_Q));
-    s = root_Q * (cosine + kSqrt3 * std::sqrt(std::max(0.0, 1.0 - cosine * cosine))) - third;
+    double cosine, sine;
+    CosAndSinOfThird(R / (Q * root_Q), &cosine, &sine);
+    s = root_Q * (cosine + kSqrt3 * sine) - third;
   } else {
     const double magnitude = std::cbrt(std::abs(R) + std::sqrt(R * R - Q3));
     const double A = R > 0 ? -magnitude : magnitude;

@@ -9,6 +9,24 @@ namespace {
 // Below this, relative to the rest, a quantity is rounding.
 constexpr double kNegligible = 1e-12;
 
+// sin(a) / a and (1 - cos a) / a, for small angles by their series, to rounding: no division, and
+// faster than std::sin.
+void SineAndVersine(double a, double* sine_over_a, double* versine_over_a) {
+  constexpr double kSmall = 0.2;  // the first term left out is below 1e-18
+  if (std::abs(a) < kSmall) {
+    const double y = a * a;
+    const double y2 = y * y;
+    const double y4 = y2 * y2;
+    *sine_over_a = (1.0 - y * (1.0 / 6)) + y2 * (1.0 / 120 - y * (1.0 / 5040)) +
+                   y4 * (1.0 / 362880 - y * (1.0 / 39916800));
+    *versine_over_a = a * ((0.5 - y * (1.0 / 24)) + y2 * (1.0 / 720 - y * (1.0 / 40320)) +
+                           y4 * (1.0 / 3628800 - y * (1.0 / 479001600)));
+  } else {
+    *sine_over_a = std::sin(a) / a;
+    *versine_over_a = (1.0 - std::cos(a)) / a;
+  }
+}
+
 }  // namespace
 
 template <RotationModel kModel>
@@ -39,40 +57,41 @@ void DepthSystem<kModel>::SetRow(const PreparedMatch& m, int row) {
   const double* x2 = reference_->x2;
   const double* s1 = reference_->s1;
   const double* s2 = reference_->s2;
-  // k0 + kc cos a + ks sin a. Column 0 is -x1.(R'n), column 1 is x2.n, column 2 is the match's
-  // constraint at t = s2 - R s1.
-  const double k0[3] = {-(x1[0] * m.Xc + x1[2] * m.Xs), x2[0] * m.X0 + x2[2] * m.Z0,
-                        m.K0 - (s1[0] * m.Xc + s1[2] * m.Xs) + s2[0] * m.X0 + s2[2] * m.Z0};
-  const double kc[3] = {-(x1[0] * m.X0 + x1[1] * m.Yc + x1[2] * m.Z0),
-                        x2[0] * m.Xc + x2[1] * m.Yc + x2[2] * m.Xs,
-                        m.Kc - (s1[0] * m.X0 + s1[1] * m.Yc + s1[2] * m.Z0) +
-                            (s2[0] * m.Xc + s2[1] * m.Yc + s2[2] * m.Xs)};
-  const double ks[3] = {x1[0] * m.Z0 - x1[1] * m.Ys - x1[2] * m.X0,
-                        x2[0] * m.Xs + x2[1] * m.Ys - x2[2] * m.Xc,
-                        m.Ks + s1[0] * m.Z0 - s1[1] * m.Ys - s1[2] * m.X0 + s2[0] * m.Xs +
-                            s2[1] * m.Ys - s2[2] * m.Xc};
-  if constexpr (kModel == RotationModel::kExact) {
-    // (1 + z^2) cos a = 1 - z^2, (1 + z^2) sin a = 2 z.
-    for (int c = 0; c < 3; ++c) {
-      f_[0][row][c] = k0[c] + kc[c];
-      f_[1][row][c] = 2.0 * ks[c];
-      f_[2][row][c] = k0[c] - kc[c];
+  // Entries k0 + kc cos a + ks sin a.
+  const auto set = [&](int column, double k0, double kc, double ks) {
+    f_[0][row][column] = k0 + kc;
+    if constexpr (kModel == RotationModel::kExact) {
+      // (1 + z^2) cos a = 1 - z^2, (1 + z^2) sin a = 2 z.
+      f_[1][row][column] = 2.0 * ks;
+      f_[2][row][column] = k0 - kc;
+    } else {
+      f_[1][row][column] = ks;
     }
-    if (deflated_) {
-      // f_[0] is zero up to rounding here; so kc = -k0.
-      f_[0][row][2] = 2.0 * ks[2];
-      f_[1][row][2] = 2.0 * k0[2];
+  };
+  // -x1 . (R'n) and x2 . n.
+  set(0, -(x1[0] * m.Xc + x1[2] * m.Xs), -(x1[0] * m.X0 + x1[1] * m.Yc + x1[2] * m.Z0),
+      x1[0] * m.Z0 - x1[1] * m.Ys - x1[2] * m.X0);
+  set(1, x2[0] * m.X0 + x2[2] * m.Z0, x2[0] * m.Xc + x2[1] * m.Yc + x2[2] * m.Xs,
+      x2[0] * m.Xs + x2[1] * m.Ys - x2[2] * m.Xc);
+  // The match's constraint at t = s2 - R s1.
+  const double k0 = m.K0 - (s1[0] * m.Xc + s1[2] * m.Xs) + s2[0] * m.X0 + s2[2] * m.Z0;
+  const double ks = m.Ks + s1[0] * m.Z0 - s1[1] * m.Ys - s1[2] * m.X0 + s2[0] * m.Xs +
+                    s2[1] * m.Ys - s2[2] * m.Xc;
+  if (deflated_) {
+    // It is zero up to rounding at a = 0; so kc = -k0, and the entry is divided by z.
+    if constexpr (kModel == RotationModel::kExact) {
+      f_[0][row][2] = 2.0 * ks;
+      f_[1][row][2] = 2.0 * k0;
       f_[2][row][2] = 0.0;
-    }
-  } else {
-    for (int c = 0; c < 3; ++c) {
-      f_[0][row][c] = k0[c] + kc[c];
-      f_[1][row][c] = ks[c];
-    }
-    if (deflated_) {
-      f_[0][row][2] = ks[2];
+    } else {
+      f_[0][row][2] = ks;
       f_[1][row][2] = 0.0;
     }
+  } else {
+    set(2, k0,
+        m.Kc - (s1[0] * m.X0 + s1[1] * m.Yc + s1[2] * m.Z0) +
+            (s2[0] * m.Xc + s2[1] * m.Yc + s2[2] * m.Xs),
+        ks);
   }
 }
 
@@ -184,20 +203,23 @@ void DepthSystem<kModel>::NullVector(double z, double v[3]) const {
     v[2] = 0.0;
     return;
   }
-  // The cross product of the best conditioned pair of rows.
-  // All are made and the best is picked by its index: which it is cannot be predicted.
-  double cross[3][3], norm2[3];
+  // The cross products of the pairs of rows are multiples of the null vector; their sum by the size
+  // of one component, which cannot cancel. d1 as a rule is far from zero.
+  double cross[3][3];
   for (int r = 0; r < 3; ++r) {
     const double* a = F[r];
     const double* b = F[(r + 1) % 3];
     cross[r][0] = a[1] * b[2] - a[2] * b[1];
     cross[r][1] = a[2] * b[0] - a[0] * b[2];
     cross[r][2] = a[0] * b[1] - a[1] * b[0];
-    norm2[r] = cross[r][0] * cross[r][0] + cross[r][1] * cross[r][1] + cross[r][2] * cross[r][2];
   }
-  const int first = norm2[1] > norm2[0] ? 1 : 0;
-  const int best = norm2[2] > norm2[first] ? 2 : first;
-  for (int c = 0; c < 3; ++c) v[c] = cross[best][c];
+  constexpr double kSmall2 = 1e-4;
+  for (int k = 0; k < 3; ++k) {
+    for (int c = 0; c < 3; ++c) {
+      v[c] = cross[0][k] * cross[0][c] + cross[1][k] * cross[1][c] + cross[2][k] * cross[2][c];
+    }
+    if (v[k] * v[k] > kSmall2 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2])) return;
+  }
 }
 
 template <RotationModel kModel>
@@ -218,45 +240,47 @@ void DepthSystem<kModel>::AddSolution(const PreparedMatches& matches, double z,
     s_over_z = 2.0 * w;
     versine_over_z = s;
   } else {
-    c = std::cos(z);
-    s = std::sin(z);
-    s_over_z = std::abs(z) > 1e-4 ? s / z : 1.0 - z * z / 6.0;
-    versine_over_z = std::abs(z) > 1e-4 ? (1.0 - c) / z : 0.5 * z;
+    SineAndVersine(z, &s_over_z, &versine_over_z);
+    s = z * s_over_z;
+    c = 1.0 - z * versine_over_z;
   }
 
   const double* x1 = reference_->x1;
   const double* x2 = reference_->x2;
   const double* s1 = reference_->s1;
   const double* s2 = reference_->s2;
-  // The baseline of the reference's cameras, w times too long: w b = d2 x2 - d1 R x1.
-  const Eigen::Vector3d wb(v[1] * x2[0] - v[0] * (c * x1[0] + s * x1[2]),
-                           v[1] * x2[1] - v[0] * x1[1],
-                           v[1] * x2[2] - v[0] * (c * x1[2] - s * x1[0]));
-  const double w = deflated_ ? v[2] / z : v[2];
+  // The baseline of the reference's cameras, w times too long: w b = d2 x2 - d1 R x1. Components,
+  // as a vector written by them cannot be read back whole without waiting.
+  const double bx = v[1] * x2[0] - v[0] * (c * x1[0] + s * x1[2]);
+  const double by = v[1] * x2[1] - v[0] * x1[1];
+  const double bz = v[1] * x2[2] - v[0] * (c * x1[2] - s * x1[0]);
   const double depth = std::abs(v[0]) + std::abs(v[1]);
   const bool has_scale = std::abs(v[2]) > kNegligible * depth && (!deflated_ || std::abs(z) > 1e-8);
 
-  Eigen::Vector3d t;
+  double tx, ty, tz;
   if (has_scale && deflated_) {
-    // t = wb / w + (I - R) s, both divided by z first: finite for any z.
-    const Eigen::Vector3d arm(versine_over_z * s1[0] - s_over_z * s1[2], 0.0,
-                              s_over_z * s1[0] + versine_over_z * s1[2]);
-    t = z * (wb / v[2] + arm);
+    // t = b + (I - R) s, both divided by z first: finite for any z.
+    const double scale = z / v[2];
+    tx = scale * bx + z * (versine_over_z * s1[0] - s_over_z * s1[2]);
+    ty = scale * by;
+    tz = scale * bz + z * (s_over_z * s1[0] + versine_over_z * s1[2]);
   } else {
-    const Eigen::Vector3d arm(s2[0] - (c * s1[0] + s * s1[2]), s2[1] - s1[1],
-                              s2[2] - (c * s1[2] - s * s1[0]));
+    double scale;
     if (has_scale) {
-      t = wb / w + arm;
+      scale = 1.0 / v[2];
     } else {
-      const double norm = wb.norm();
+      const double norm = std::sqrt(bx * bx + by * by + bz * bz);
       if (!(norm > 0.0)) return;
       // The sign that puts the reference in front of its cameras.
-      t = wb * ((v[0] + v[1] >= 0 ? 1.0 : -1.0) / norm) + arm;
+      scale = (v[0] + v[1] >= 0 ? 1.0 : -1.0) / norm;
     }
+    tx = scale * bx + s2[0] - (c * s1[0] + s * s1[2]);
+    ty = scale * by + s2[1] - s1[1];
+    tz = scale * bz + s2[2] - (c * s1[2] - s * s1[0]);
   }
   Solution& solution = solutions->Append();
   solution.R = matches.alignment().Rotation(c, s);
-  solution.t = matches.alignment().A2.transpose() * t;
+  solution.t = matches.alignment().ToFrame2(tx, ty, tz);
   solution.has_scale = has_scale;
 }
 

@@ -1,19 +1,26 @@
-// Four matches as constraints on the translation itself: what 4pt-lee, 4pt-liu and 4pt-sweeney
-// share.
+// Four matches as constraints on the translation itself, without a reference match: what 4pt-lee,
+// 4pt-liu, 4pt-sweeney and the polished solvers of four matches share.
 //
 // Each match says n(a) . t + k(a) = 0 (prepared_matches.h), so (t, 1) is a null vector of a 4x4
-// matrix whose determinant is a polynomial in the angle. Two structures are taken out of it:
+// matrix whose determinant is a polynomial in the angle. In the frame half way, with
+// z = tan(a/2) and t = (u_x + z u_z, (1 + z^2) u_y, u_z - z u_x), the row is
+//   x = (X0 + Xc) + z (Xs - Z0)      y = (1 - z^2) Yc + 2 z Ys
+//   z = (Z0 + Xs) + z (X0 - Xc)      k = (K0 + Kc) + 2 z Ks + z^2 (K0 - Kc)
+// times (u, w), w = 1 / (1 + z^2) where u is scaled such that t is the translation. Two structures
+// are taken out of it:
 //
 // Deflation. If all matches are intra-camera and R = I is in the family, k vanishes at a = 0: the
-// zero motion R = I, t = 0 satisfies the sample whatever the matches are. k is divided by
-// z = tan(a/2) and the unknowns become (t, w'), w' = z w. A root that remains at 0 is true pure
-// translation, with a direction and no scale (compare depth_system.h).
+// zero motion R = I, t = 0 satisfies the sample whatever the matches are. k is divided by z and
+// the unknowns become (u, w'), w' = z w. A root that remains at 0 is true pure translation, with a
+// direction and no scale (compare depth_system.h).
 //
 // Central samples. If all camera centres coincide, the baseline b = R s_i + t - s_j satisfies
 // n . b = 0 and |b| is not determined: (t, 1) = (s_j - R s_i, 1) would be a null vector at any
 // angle. The unknowns become (b, w), one match is left out and w = 0 takes its row.
 #ifndef RIGEL_MINIMAL_DIRECT_SAMPLE_H_
 #define RIGEL_MINIMAL_DIRECT_SAMPLE_H_
+
+#include <Eigen/Core>
 
 #include "rigel/minimal/prepared_matches.h"
 #include "rigel/minimal/solutions.h"
@@ -22,33 +29,41 @@ namespace rigel {
 
 class DirectSample {
  public:
-  // `sample` holds four indices into `matches`, which must outlive this object.
+  // `sample` holds four indices into `matches`; both must outlive this object.
   DirectSample(const PreparedMatches& matches, const int* sample);
   DirectSample(const DirectSample&) = delete;
   DirectSample& operator=(const DirectSample&) = delete;
 
-  const ConstraintRow& operator[](int r) const { return *rows_[r]; }
   bool deflated() const { return deflated_; }
 
   // False if no match moves: nothing can be said of translation.
-  bool has_parallax() const { return reference_->parallax2 > kNoParallax2; }
+  bool has_parallax() const { return has_parallax_; }
+
+  // Coefficients of the determinant, ascending in z = tan(a/2): degree 6, or 5 if deflated; c[6] is
+  // written in both cases. The structure of the columns x and z takes 1 + z^2 out of the degree 8
+  // that the frames of the matches themselves have (Sweeney et al. 2014).
+  void Determinant(double c[7]) const;
+
+  // The same with the cubic of the first-order form in `first_order`, ascending: y and k to first
+  // order in z. Deflated samples only. Its roots are a tenth as biased as those of the depth form,
+  // because nothing is multiplied by depths of tens of metres.
+  void Determinant(double c[6], double first_order[4]) const;
 
   // Adds the motion with z = tan(a/2): R exact from the angle, t from the null vector. Adds
   // nothing if that does not exist.
   void AddSolution(double z, Solutions* solutions) const;
 
+  // Columns of the matrix, one entry a match: coefficients of 1, z and, for k, z^2. That of y is
+  // -y0. kc of a deflated sample: of k / z, k2 = 0.
+  Eigen::Array4d x0, x1, y0, y1, z0, z1, k0, k1, k2;
+
  private:
   const PreparedMatches* matches_;
-  const PreparedMatch* reference_;  // of largest parallax: decides the sign where |t| is not known
+  const int* sample_;
+  bool has_parallax_;
   bool deflated_;
   bool central_;
-  const ConstraintRow* rows_[4];
-  ConstraintRow central_rows_[4];  // set and used where the sample is central only
 };
-
-// The null vector of a 4x4 matrix of rank 3: the largest row of its adjugate. Zero if the rank is
-// lower.
-void NullVector4(const double m[4][4], double v[4]);
 
 }  // namespace rigel
 

@@ -16,52 +16,44 @@ void Minor(const double* p0, const double* q0, const double* p1, const double* q
   m[4] = p0[2] * q1[2] - q0[2] * p1[2];
 }
 
+// Rows i, j of the minors of (x, z) and p, q of those of (y, k): even permutations.
+constexpr int kSplits[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
+                               {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};
+
 }  // namespace
 
 int Solve4ptLee(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
   solutions->clear();
   const DirectSample rows(matches, sample);
   if (!rows.has_parallax()) return 0;
-  // (1 + z^2) times each entry; k of a deflated sample is divided by z.
+  // (1 + z^2) times each entry in the frame of the second moment: the columns of `rows` turned back
+  // by a / 2; k of a deflated sample is divided by z.
   double x[4][3], y[4][3], z[4][3], k[4][3];
   for (int r = 0; r < 4; ++r) {
-    const ConstraintRow& m = rows[r];
-    x[r][0] = m.X0 + m.Xc;
-    x[r][1] = 2.0 * m.Xs;
-    x[r][2] = m.X0 - m.Xc;
-    y[r][0] = m.Yc;
-    y[r][1] = 2.0 * m.Ys;
-    y[r][2] = -m.Yc;
-    z[r][0] = m.Z0 + m.Xs;
-    z[r][1] = -2.0 * m.Xc;
-    z[r][2] = m.Z0 - m.Xs;
-    if (rows.deflated()) {
-      k[r][0] = 2.0 * m.Ks;
-      k[r][1] = m.K0 - m.Kc;
-      k[r][2] = 0.0;
-    } else {
-      k[r][0] = m.K0 + m.Kc;
-      k[r][1] = 2.0 * m.Ks;
-      k[r][2] = m.K0 - m.Kc;
-    }
+    x[r][0] = rows.x0[r];
+    x[r][1] = rows.x1[r] + rows.z0[r];
+    x[r][2] = rows.z1[r];
+    y[r][0] = rows.y0[r];
+    y[r][1] = rows.y1[r];
+    y[r][2] = -rows.y0[r];
+    z[r][0] = rows.z0[r];
+    z[r][1] = rows.z1[r] - rows.x0[r];
+    z[r][2] = -rows.x1[r];
+    k[r][0] = rows.k0[r];
+    k[r][1] = rows.k1[r];
+    k[r][2] = rows.k2[r];
   }
 
   // Laplace expansion: minors of columns (x, z) of rows (i, j) with those of (y, k) of the others.
   double c[9] = {};
-  const auto add = [&](int i, int j, int p, int q, double sign) {
+  for (const auto& [i, j, p, q] : kSplits) {
     double a[5], b[5];
     Minor(x[i], z[i], x[j], z[j], a);
     Minor(y[p], k[p], y[q], k[q], b);
     for (int n = 0; n < 5; ++n) {
-      for (int l = 0; l < 5; ++l) c[n + l] += sign * a[n] * b[l];
+      for (int l = 0; l < 5; ++l) c[n + l] += a[n] * b[l];
     }
-  };
-  add(0, 1, 2, 3, 1.0);
-  add(0, 2, 1, 3, -1.0);
-  add(0, 3, 1, 2, 1.0);
-  add(1, 2, 0, 3, 1.0);
-  add(1, 3, 0, 2, -1.0);
-  add(2, 3, 0, 1, 1.0);
+  }
 
   // The determinant of degree 8 is 1 + z^2 times one of degree 6, as (x, z) turn by a rotation: the
   // quotient has the same real roots. That of a deflated sample is a quintic.

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "rigel/minimal/polynomial.h"
+#include "rigel/minimal/newton_lanes.h"
 
 namespace rigel {
 
@@ -16,30 +16,14 @@ int PolishRoots(const double* c, const double* starts, int num_starts, double* r
   constexpr int kMaxSteps = 6;
   // Quadratic convergence: the error left is of the order of the step squared.
   constexpr double kConverged = 1e-7;
-  constexpr int kLanes = 4;
   if (num_starts == 0) return 0;
-  double z[kLanes], step[kLanes];
-  for (int l = 0; l < kLanes; ++l) z[l] = starts[l < num_starts ? l : 0];
-  // All at once: a step of one depends on its last one, and the others fill the time.
+  const polynomial_internal::PolynomialInLanes<N> p(c);
+  auto z = polynomial_internal::LanesOf<4>(starts, num_starts);
+  auto step = z;
   for (int n = 0; n < kMaxSteps; ++n) {
-    double value[kLanes], slope[kLanes];
-    for (int l = 0; l < kLanes; ++l) {
-      value[l] = c[N] * z[l] + c[N - 1];
-      slope[l] = c[N];
-    }
-    for (int k = N - 2; k >= 0; --k) {
-      for (int l = 0; l < kLanes; ++l) {
-        slope[l] = slope[l] * z[l] + value[l];
-        value[l] = value[l] * z[l] + c[k];
-      }
-    }
-    bool all = true;
-    for (int l = 0; l < kLanes; ++l) {
-      step[l] = value[l] / slope[l];
-      z[l] -= step[l];
-    }
-    for (int l = 0; l < kLanes; ++l) all &= !(std::abs(step[l]) > kConverged * std::abs(z[l]));
-    if (all) break;
+    step = p.NewtonStep(z);
+    z -= step;
+    if (!(step.abs() > kConverged * z.abs()).any()) break;
   }
   int count = 0;
   for (int k = 0; k < num_starts; ++k) {

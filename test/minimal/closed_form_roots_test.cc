@@ -19,10 +19,12 @@ namespace {
 
 using polynomial_internal::Bracket;
 using polynomial_internal::BracketedNewton;
-using polynomial_internal::CosOfThird;
+using polynomial_internal::CosAndSinOfThird;
 using polynomial_internal::IsolatedRoots;
 using polynomial_internal::kUndecided;
+using polynomial_internal::LanesOf;
 using polynomial_internal::NewtonFromGoodStarts;
+using polynomial_internal::PolynomialInLanes;
 using polynomial_internal::PowerOfTwoRoot;
 using polynomial_internal::RootsInClosedForm;
 
@@ -149,18 +151,22 @@ TEST(ClosedFormRoots, LoseNoRootOfTheSolversDeterminants) {
   }
 }
 
-TEST(ClosedFormRoots, CosineOfAThirdOfAnAngle) {
+TEST(ClosedFormRoots, CosineAndSineOfAThirdOfAnAngle) {
   double largest = 0.0;
-  for (int k = -10000; k <= 10000; ++k) {
-    const double r = k / 10000.0;
-    largest = std::max(largest, std::abs(CosOfThird(r) - std::cos(std::acos(r) / 3.0)));
+  const auto check = [&largest](double r) {
+    double cosine, sine;
+    CosAndSinOfThird(r, &cosine, &sine);
+    const double third = std::acos(r) / 3.0;
+    largest =
+        std::max({largest, std::abs(cosine - std::cos(third)), std::abs(sine - std::sin(third))});
+  };
+  for (int k = -10000; k <= 10000; ++k) check(k / 10000.0);
+  // Towards the ends, where u = sqrt((1 + r) / 2) and the angle are not smooth in r.
+  for (double gap = 1e-15; gap < 0.1; gap *= 1.5) {
+    check(-1.0 + gap);
+    check(1.0 - gap);
   }
-  // Towards -1, where u = sqrt((1 + r) / 2) is not smooth in r.
-  for (double gap = 1e-16; gap < 0.1; gap *= 1.5) {
-    const double r = -1.0 + gap;
-    largest = std::max(largest, std::abs(CosOfThird(r) - std::cos(std::acos(r) / 3.0)));
-  }
-  EXPECT_LT(largest, 4e-9);
+  EXPECT_LT(largest, 6e-9);
 }
 
 TEST(ClosedFormRoots, CubicStartsAreNearTheRoots) {
@@ -225,6 +231,29 @@ TEST(JointNewton, ReadsNoBracketWhereThereIsNone) {
   double roots[4] = {7.0, 7.0, 7.0, 7.0};
   BracketedNewton<4>(c, &garbage, 0, roots);
   for (const double root : roots) EXPECT_EQ(root, 7.0);
+}
+
+template <int N>
+void CheckNewtonStep() {
+  Random random = Random::Stream(630, N);
+  for (int n = 0; n < 100; ++n) {
+    double c[N + 1], x[N];
+    for (double& value : c) value = random.Normal();
+    for (double& value : x) value = 2.0 * random.Normal();
+    const auto step = PolynomialInLanes<N>(c).NewtonStep(LanesOf<N>(x, N));
+    for (int l = 0; l < N; ++l) {
+      double slope;
+      const double expected = EvaluatePolynomial<N>(c, x[l], &slope) / slope;
+      EXPECT_NEAR(step[l], expected, 1e-11 * (1.0 + expected * expected)) << N;
+    }
+  }
+}
+
+TEST(JointNewton, StepsAsHornersRuleSays) {
+  CheckNewtonStep<3>();
+  CheckNewtonStep<4>();
+  CheckNewtonStep<5>();
+  CheckNewtonStep<6>();
 }
 
 TEST(JointNewton, RefusesStartsThatEndAtOneRoot) {

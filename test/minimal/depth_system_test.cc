@@ -13,7 +13,6 @@
 #include "rigel/core/epipolar.h"
 #include "rigel/core/metrics.h"
 #include "rigel/core/random.h"
-#include "rigel/minimal/direct_system.h"
 #include "rigel/minimal/polynomial.h"
 #include "rigel/minimal/three_point.h"
 #include "rigel/problems/synthetic.h"
@@ -300,37 +299,6 @@ TEST(DepthSystem, PlanarReferenceOnTheHorizon) {
     }
   }
   EXPECT_EQ(found, kSeeds);
-}
-
-TEST(DirectSystem, ItsRootIsTenTimesLessBiasedThanTheDepthForms) {
-  std::vector<double> direct_errors, depth_errors;
-  for (int seed = 0; seed < 300; ++seed) {
-    SceneOptions options;
-    options.num_matches = 4;
-    options.noise_px = 0.0;
-    FramePair pair;
-    std::string error;
-    ASSERT_TRUE(MakeScenePair(options, seed, &pair, &error)) << error;
-    const PreparedMatches matches = Prepare(pair, PriorKind::kVertical);
-    const double truth = matches.alignment().NearestAngle(pair.truth->R);
-    double c[7];
-    double roots[3];
-    const auto nearest = [&](int count, double unit) {
-      double best = 1.0;
-      for (int k = 0; k < count; ++k) best = std::min(best, std::abs(unit * roots[k] - truth));
-      return best;
-    };
-    DirectDeterminantIntra(matches, kSample, c);
-    direct_errors.push_back(nearest(RealRoots<3>(c, roots), 2.0));
-    DepthSystem<RotationModel::kFirstOrder> system;
-    system.SetFourPoint(matches, kSample);
-    ASSERT_EQ(system.Determinant(c), 2);
-    depth_errors.push_back(nearest(RealRoots<2>(c, roots), 1.0));
-  }
-  std::sort(direct_errors.begin(), direct_errors.end());
-  std::sort(depth_errors.begin(), depth_errors.end());
-  EXPECT_LT(RadToDeg(direct_errors[150]), 0.015);
-  EXPECT_LT(5.0 * direct_errors[150], depth_errors[150]);
 }
 
 }  // namespace
