@@ -18,7 +18,7 @@ namespace rigel {
 int Solve4ptApprox(const PreparedMatches& matches, const int* sample, Solutions* solutions);
 
 // The same made exact near zero rotation: Newton steps on the exact det F, started at the roots of
-// the first-order determinant on t itself (direct_system.h), or of the cubic Taylor polynomial of
+// the first-order determinant on t itself (direct_sample.h), or of the cubic Taylor polynomial of
 // det F where the sample has inter-camera matches; what does not converge is dropped.
 int Solve4ptApproxPolished(const PreparedMatches& matches, const int* sample, Solutions* solutions);
 

@@ -7,7 +7,7 @@
 //   R = R_y(a),   t = -rho R_y(a/2) f      (aligned; rho > 0 forwards, metres along the chord)
 // so t' = R_y(-a/2) t = -rho f does not turn, and with z = tan(a/2) a match says
 //   tau e(z) + k(z) = 0,   tau = -rho sqrt(1 + z^2),
-//   e = (f_x, f_z) . (n_x, n_z) of degree 1, k of degree 2 (direct_system.h).
+//   e = (f_x, f_z) . (n_x, n_z) of degree 1, k of degree 2 (direct_sample.h).
 // Two matches: e1 k2 - e2 k1 = 0, a cubic in z, and tau from the better conditioned row; the sign
 // of rho comes out with it. For intra-camera samples k is divided by z (depth_system.h): a
 // quadratic, whose root 0 is driving straight ahead, without scale.
