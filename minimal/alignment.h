@@ -30,8 +30,10 @@ struct Alignment {
   }
 
   // A2' t: the translation t of the aligned frames in f2.
-  Eigen::Vector3d ToFrame2(double tx, double ty, double tz) const {
-    return tx * A2.row(0).transpose() + ty * A2.row(1).transpose() + tz * A2.row(2).transpose();
+  Eigen::Vector3d ToFrame2(const Eigen::Vector3d& t) const {
+    // By components, as a vector written by them cannot be read back whole without waiting.
+    return t.x() * A2.row(0).transpose() + t.y() * A2.row(1).transpose() +
+           t.z() * A2.row(2).transpose();
   }
 
   // The angle a of the member of the family nearest to R.

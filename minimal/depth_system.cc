@@ -280,7 +280,7 @@ void DepthSystem<kModel>::AddSolution(const PreparedMatches& matches, double z,
   }
   Solution& solution = solutions->Append();
   solution.R = matches.alignment().Rotation(c, s);
-  solution.t = matches.alignment().ToFrame2(tx, ty, tz);
+  solution.t = matches.alignment().ToFrame2({tx, ty, tz});
   solution.has_scale = has_scale;
 }
 

@@ -182,7 +182,7 @@ void DirectSample::AddSolution(double z, Solutions* solutions) const {
   }
   Solution& solution = solutions->Append();
   solution.R = matches_->alignment().Rotation(c, s);
-  solution.t = matches_->alignment().A2.transpose() * t;
+  solution.t = matches_->alignment().ToFrame2(t);
   solution.has_scale = has_scale;
 }
 

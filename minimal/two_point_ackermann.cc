@@ -92,7 +92,7 @@ int Solve2ptAckermann(const PreparedMatches& matches, const int* sample, Solutio
                                         : UnitBaselineTranslation(reference, c, s, chord);
     Solution& solution = solutions->Append();
     solution.R = alignment.Rotation(c, s);
-    solution.t = alignment.A2.transpose() * t;
+    solution.t = alignment.ToFrame2(t);
     solution.has_scale = has_scale;
   }
   return solutions->size();

@@ -56,7 +56,7 @@ int Solve2ptChoi(const PreparedMatches& matches, const int* sample, Solutions* s
         UnitBaselineTranslation(reference, c, s, Eigen::Vector3d(b[1], 0.0, b[0]));
     Solution& solution = solutions->Append();
     solution.R = matches.alignment().Rotation(c, s);
-    solution.t = matches.alignment().A2.transpose() * t;
+    solution.t = matches.alignment().ToFrame2(t);
     solution.has_scale = false;
     if (root == 0.0) break;
   }

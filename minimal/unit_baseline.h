@@ -22,9 +22,10 @@ inline Eigen::Vector3d UnitBaselineTranslation(const PreparedMatch& reference, d
   const Eigen::Vector3d f(x2[0], x2[1], x2[2]);
   // b = d2 f - d1 g, so (f + g) x b . (g x f) = (d1 + d2) |g x f|^2.
   const double depths = (f + g).cross(direction).dot(g.cross(f));
-  const Eigen::Vector3d arm(s2[0] - (c * s1[0] + s * s1[2]), s2[1] - s1[1],
-                            s2[2] - (c * s1[2] - s * s1[0]));
-  return direction * ((depths >= 0 ? 1.0 : -1.0) / direction.norm()) + arm;
+  const double scale = (depths >= 0 ? 1.0 : -1.0) / direction.norm();
+  return {scale * direction.x() + s2[0] - (c * s1[0] + s * s1[2]),
+          scale * direction.y() + s2[1] - s1[1],
+          scale * direction.z() + s2[2] - (c * s1[2] - s * s1[0])};
 }
 
 }  // namespace rigel
