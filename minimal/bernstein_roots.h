@@ -8,7 +8,22 @@
 
 namespace rigel::polynomial_system {
 
-// Real roots of the polynomial c of degree n <= kMax by Descartes' rule in the Bernstein basis, as
+// 1 / binomial(n, j) for n = kMax - 2 to kMax.
+template <int kMax>
+struct InverseBinomials {
+  double rows[3][kMax + 1] = {};
+  constexpr InverseBinomials() {
+    for (int n = kMax - 2; n <= kMax; ++n) {
+      double binomial = 1.0;
+      for (int j = 0; j <= n; ++j) {
+        rows[kMax - n][j] = 1.0 / binomial;
+        binomial = binomial * (n - j) / (j + 1);
+      }
+    }
+  }
+};
+
+// Real roots of the polynomial c of degree n, kMax - 2 <= n <= kMax, by Descartes' rule in the Bernstein basis, as
 // in polynomial.h but with a degree known at run time and to the accuracy that an iteration on the
 // original equations needs, not more.
 template <int kMax>
@@ -53,11 +68,9 @@ class RootFinder {
     };
     constexpr int kMaxLevel = 24;
     Piece stack[kMaxLevel + 2];
-    double binomial = 1.0;
-    for (int j = 0; j <= n_; ++j) {
-      stack[0].b[j] = c[j] / binomial;
-      binomial = binomial * (n_ - j) / (j + 1);
-    }
+    static constexpr InverseBinomials<kMax> kInverse;
+    const double* inverse = kInverse.rows[kMax - n_];
+    for (int j = 0; j <= n_; ++j) stack[0].b[j] = c[j] * inverse[j];
     for (int j = 1; j <= n_; ++j) {
       double* b = stack[0].b;
       for (int k = n_; k >= j; --k) b[k] += b[k - 1];

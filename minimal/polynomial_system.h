@@ -103,13 +103,13 @@ class MacaulayMatrix {
   bool AddMultiples(const double* p, int degree) {
     const int num_coefficients = NumMonomials(degree);
     double largest = 0.0;
-    bool finite = true;
+    double zero = 0.0;  // NaN if a coefficient is not finite
     for (int k = 0; k < num_coefficients; ++k) {
-      finite = finite && std::isfinite(p[k]);
+      zero += p[k] - p[k];
       largest = std::max(largest, std::abs(p[k]));
     }
     const int num_shifts = NumMonomials(kDegree - degree);
-    if (!finite || !(largest > 0.0) || num_rows_ + num_shifts > kMaxRows) return false;
+    if (zero != 0.0 || !(largest > 0.0) || num_rows_ + num_shifts > kMaxRows) return false;
     const double scale = 1.0 / largest;
     double* unshifted = rows_[num_rows_++];
     std::fill(unshifted, unshifted + kStride, 0.0);
