@@ -12,10 +12,9 @@ constexpr int kSize = 20;
 constexpr int kLanes = 4;
 using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 
-// Loops over parts of rows begin and end at multiples of four, where that takes in zeros or unused
+// Loops over parts of rows begin at multiples of four, where that takes in zeros or unused
 // numbers only, so that they vectorize without remainders.
 constexpr int Down(int k) { return k & ~3; }
-constexpr int Up(int k) { return (k + 3) & ~3; }
 
 // Row k of the matrix and column k change places with row and column m; so do those columns of the
 // two rows below.
