@@ -3,8 +3,8 @@
 //
 // Multiplication is reduced to Hessenberg form from the monomials 1, x, x^2, ... on. That is less
 // work than from the other end (action_matrix.h), as their rows hold one entry each, and leaves
-// more digits of small roots in the characteristic polynomial. With 40 solutions and more the
-// powers of x are too nearly dependent.
+// more digits of small roots in the characteristic polynomial. With 48 solutions the powers
+// of x are too nearly dependent.
 //
 // Plain loops in a file of their own; every path gives the same bits (cpu_path.h). No heap.
 #ifndef RIGEL_MINIMAL_TWENTY_SOLUTIONS_H_
