@@ -13,13 +13,15 @@
 #include <cmath>
 #include <utility>
 
+#include "rigel/minimal/bernstein_roots.h"
+
 namespace rigel::polynomial_system {
 
 // The action of multiplication by x on the kSize monomials that are a basis of the solutions'
 // coordinate ring: row b holds x times monomial b. The first four monomials are 1, x, y, z.
 template <int kSize>
 struct ActionMatrix {
-  // Two more rows for RealSolutions.
+  // Two more rows for those who solve it.
   double entries[kSize + 2][kSize];
 };
 
@@ -35,9 +37,8 @@ class RealSolutions {
 
   // Appends the values of x to the `count` in `x`, up to kSize in all; returns their new number.
   // The characteristic polynomial is expanded about `centre`, which finds the roots near it best;
-  // only those nearer than 1 if `near_only`. `multiplicity` roots are known to be at the centre and
-  // left out: rounding would spread them, and telling them apart is the costliest part of all.
-  int FindX(double centre, bool near_only, int multiplicity, double* x, int count) const;
+  // only those nearer than 1 if `near_only`.
+  int FindX(double centre, bool near_only, double* x, int count) const;
 
   // The roots x of the characteristic polynomial by the secant method on the matrix itself, which
   // knows roots in a cluster better than the coefficients do. To the accuracy that an iteration on
@@ -197,166 +198,12 @@ class RealSolutions {
   double (*a_)[kSize];
 };
 
-// Real roots of the polynomial c of degree n <= kMax by Descartes' rule in the Bernstein basis, as
-// in polynomial.h but with a degree known at run time and to the accuracy that an iteration on the
-// original equations needs, not more.
-template <int kMax>
-class RootFinder {
- public:
-  RootFinder(const double* c, int n) : n_(n) { std::copy(c, c + n + 1, c_); }
-
-  int Find(bool near_only, double* roots) {
-    for (int side = 0; side < (near_only ? 2 : 4); ++side) {
-      Bracket kind;
-      kind.reversed = side >= 2;
-      kind.mirrored = side % 2 == 1;
-      double piece[kMax + 1];
-      for (int k = 0; k <= n_; ++k) piece[k] = Coefficient(kind, k);
-      UnitInterval(piece, kind);
-    }
-    for (int first = 0; first < count_; first += kLanes) {
-      Newton(brackets_ + first, std::min(kLanes, count_ - first), roots + first);
-    }
-    return count_;
-  }
-
- private:
-  static constexpr int kLanes = 4;
-
-  // An interval with one root: of c it is x, 1 / x if `reversed`, and -x or -1 / x if `mirrored`.
-  struct Bracket {
-    double low, high, guess;
-    bool low_negative;
-    bool reversed, mirrored;
-  };
-
-  double Coefficient(const Bracket& kind, int k) const {
-    const double value = kind.reversed ? c_[n_ - k] : c_[k];
-    return kind.mirrored && k % 2 == 1 ? -value : value;
-  }
-
-  void UnitInterval(const double* c, Bracket bracket) {
-    struct Piece {
-      double low, width;
-      double b[kMax + 1];
-    };
-    constexpr int kMaxLevel = 24;
-    Piece stack[kMaxLevel + 2];
-    double binomial = 1.0;
-    for (int j = 0; j <= n_; ++j) {
-      stack[0].b[j] = c[j] / binomial;
-      binomial = binomial * (n_ - j) / (j + 1);
-    }
-    for (int j = 1; j <= n_; ++j) {
-      double* b = stack[0].b;
-      for (int k = n_; k >= j; --k) b[k] += b[k - 1];
-    }
-    stack[0].low = 0.0;
-    stack[0].width = 1.0;
-    int top = 0;
-    while (top >= 0 && count_ < kMax) {
-      Piece& piece = stack[top];
-      int variations = 0;
-      int change = 0;  // the last one
-      for (int k = 0; k < n_; ++k) {
-        const bool here = (piece.b[k] < 0) != (piece.b[k + 1] < 0);
-        variations += here ? 1 : 0;
-        change = here ? k : change;
-      }
-      if (variations == 0) {
-        --top;
-      } else if (variations == 1 || top > kMaxLevel) {
-        // Where the polygon of the coefficients crosses zero.
-        const double share = piece.b[change] / (piece.b[change] - piece.b[change + 1]);
-        bracket.low = piece.low;
-        bracket.high = piece.low + piece.width;
-        bracket.guess = piece.low + piece.width * (variations == 1 ? (change + share) / n_ : 0.5);
-        bracket.low_negative = piece.b[0] < 0;
-        brackets_[count_++] = bracket;
-        --top;
-      } else {
-        Piece& right = stack[top + 1];
-        std::copy(piece.b, piece.b + n_ + 1, right.b);
-        for (int k = 0; k < n_; ++k) {
-          piece.b[k] = right.b[0];
-          for (int i = 0; i < n_ - k; ++i) right.b[i] = 0.5 * (right.b[i] + right.b[i + 1]);
-        }
-        piece.b[n_] = right.b[0];
-        piece.width *= 0.5;
-        right.low = piece.low + piece.width;
-        right.width = piece.width;
-        ++top;
-      }
-    }
-  }
-
-  // The roots in `count` <= kLanes brackets by Newton's method, safeguarded by halving. All at
-  // once: a step of one depends on its last one, and the steps of the others fill the time.
-  void Newton(const Bracket* brackets, int count, double* roots) const {
-    constexpr double kConverged = 1e-6;  // what is left is of the order of the step squared
-    double p[kMax + 1][kLanes] = {};
-    double x[kLanes], low[kLanes], high[kLanes];
-    bool low_negative[kLanes], done[kLanes];
-    for (int l = 0; l < kLanes; ++l) {
-      const Bracket& bracket = brackets[l < count ? l : 0];
-      for (int k = 0; k <= n_; ++k) p[k][l] = Coefficient(bracket, k);
-      x[l] = bracket.guess;
-      low[l] = bracket.low;
-      high[l] = bracket.high;
-      low_negative[l] = bracket.low_negative;
-      done[l] = l >= count;
-    }
-    for (int n = 0; n < 60; ++n) {
-      double value[kLanes], slope[kLanes], step[kLanes];
-      for (int l = 0; l < kLanes; ++l) {
-        value[l] = p[kMax][l];
-        slope[l] = 0.0;
-      }
-      for (int k = kMax - 1; k >= 0; --k) {
-        for (int l = 0; l < kLanes; ++l) {
-          slope[l] = slope[l] * x[l] + value[l];
-          value[l] = value[l] * x[l] + p[k][l];
-        }
-      }
-      for (int l = 0; l < kLanes; ++l) step[l] = value[l] / slope[l];
-      bool all = true;
-      for (int l = 0; l < count; ++l) {
-        if (done[l]) continue;
-        const bool below = (value[l] < 0) == low_negative[l];
-        low[l] = below ? x[l] : low[l];
-        high[l] = below ? high[l] : x[l];
-        double next = x[l] - step[l];
-        if (next > low[l] && next < high[l]) {
-          done[l] = std::abs(step[l]) <= kConverged * std::abs(next);
-        } else {
-          next = value[l] == 0.0 ? x[l] : 0.5 * (low[l] + high[l]);
-          done[l] = !(std::abs(next - x[l]) > 1e-10 * std::abs(next));
-        }
-        x[l] = next;
-        all = all && done[l];
-      }
-      if (all) break;
-    }
-    for (int l = 0; l < count; ++l) {
-      const double root = brackets[l].reversed ? 1.0 / x[l] : x[l];
-      roots[l] = brackets[l].mirrored ? -root : root;
-    }
-  }
-
-  int n_;
-  int count_ = 0;
-  double c_[kMax + 1];
-  Bracket brackets_[kMax];
-};
-
 template <int kSize>
-int RealSolutions<kSize>::FindX(double centre, bool near_only, int multiplicity, double* x,
-                                int count) const {
+int RealSolutions<kSize>::FindX(double centre, bool near_only, double* x, int count) const {
   double c[kSize + 1];
   double roots[kSize];
   CharacteristicPolynomial(centre, c);
-  const int num_roots =
-      RootFinder<kSize>(c + multiplicity, kSize - multiplicity).Find(near_only, roots);
+  const int num_roots = RootFinder<kSize>(c, kSize).Find(near_only, roots);
   for (int k = 0; k < num_roots && count < kSize; ++k) x[count++] = roots[k] + centre;
   return count;
 }

@@ -103,17 +103,21 @@ class MacaulayMatrix {
   bool AddMultiples(const double* p, int degree) {
     const int num_coefficients = NumMonomials(degree);
     double largest = 0.0;
+    double zero = 0.0;  // NaN if a coefficient is not finite
     for (int k = 0; k < num_coefficients; ++k) {
-      if (!std::isfinite(p[k])) return false;
+      zero += p[k] - p[k];
       largest = std::max(largest, std::abs(p[k]));
     }
     const int num_shifts = NumMonomials(kDegree - degree);
-    if (!(largest > 0.0) || num_rows_ + num_shifts > kMaxRows) return false;
+    if (zero != 0.0 || !(largest > 0.0) || num_rows_ + num_shifts > kMaxRows) return false;
     const double scale = 1.0 / largest;
-    for (int m = 0; m < num_shifts; ++m) {
+    double* unshifted = rows_[num_rows_++];
+    std::fill(unshifted, unshifted + kStride, 0.0);
+    for (int k = 0; k < num_coefficients; ++k) unshifted[kColumns - 1 - k] = scale * p[k];
+    for (int m = 1; m < num_shifts; ++m) {
       const auto& shift = kMonomials.exponents[m];
       double* row = rows_[num_rows_++];
-      std::fill(row, row + kColumns, 0.0);
+      std::fill(row, row + kStride, 0.0);
       for (int k = 0; k < num_coefficients; ++k) {
         const auto& e = kMonomials.exponents[k];
         row[kColumns - 1 - kMonomials.index[e[0] + shift[0]][e[1] + shift[1]][e[2] + shift[2]]] =
@@ -173,27 +177,27 @@ class MacaulayMatrix {
     if (top_left) first = 0;
 
     // The leading monomials in terms of the others, from the last pivot back.
+    if (n != kSize) return false;
     double reduced[kMaxPivots][kSize];
     for (int p = rank - 1; p >= first; --p) {
       const double* row = rows_[p];
       double* out = reduced[p];
-      for (int k = 0; k < n; ++k) {
+      for (int k = 0; k < kSize; ++k) {
         out[k] = basis_column[k] > column_[p] ? -row[basis_column[k]] : 0.0;
       }
       for (int q = p + 1; q < rank; ++q) {
         const double factor = row[column_[q]];
         if (factor == 0.0) continue;
-        for (int k = 0; k < n; ++k) out[k] -= factor * reduced[q][k];
+        for (int k = 0; k < kSize; ++k) out[k] -= factor * reduced[q][k];
       }
     }
     const auto add = [&](int m, double factor, double* out) {
       if (pivot_of[m] < 0) {
         out[basis_of[m]] += factor;
       } else {
-        for (int k = 0; k < n; ++k) out[k] += factor * reduced[pivot_of[m]][k];
+        for (int k = 0; k < kSize; ++k) out[k] += factor * reduced[pivot_of[m]][k];
       }
     };
-    if (n != kSize) return false;
     for (int b = 0; b < n; ++b) std::fill(action->entries[b], action->entries[b] + n, 0.0);
     for (int b = 0; b < n - (top_left ? 1 : 0); ++b) {
       add(times(basis[b], 1, 0), 1.0, action->entries[b]);
@@ -243,6 +247,7 @@ class MacaulayMatrix {
   }
 
  private:
+  static constexpr int kStride = (kColumns + 3) & ~3;  // of a row, with zeros behind it
   static constexpr int kMaxSearch = 1000;
   static constexpr int kMaxPivots = kMaxRows < kColumns ? kMaxRows : kColumns;
 
@@ -271,18 +276,22 @@ class MacaulayMatrix {
     const double inv = 1.0 / top[c];
     top[c] = 1.0;
     for (int k = c + 1; k < kColumns; ++k) top[k] *= inv;
+    // From a multiple of four on: what is left of a pivot is not read again.
+    const int first = (c + 1) & ~3;
     for (int r = rank + 1; r < num_rows_; ++r) {
       double* row = rows_[r];
       const double factor = row[c];
       if (factor == 0.0) continue;
-      for (int k = c + 1; k < kColumns; ++k) row[k] -= factor * top[k];
+      for (int k = first; k < kStride; k += 4) {
+        for (int l = 0; l < 4; ++l) row[k + l] -= factor * top[k + l];
+      }
     }
     return true;
   }
 
   int num_rows_ = 0;
   int column_[kMaxRows];  // of a pivot
-  double rows_[kMaxRows][kColumns];
+  alignas(32) double rows_[kMaxRows][kStride];
 };
 
 }  // namespace rigel::polynomial_system

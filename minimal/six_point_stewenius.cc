@@ -125,8 +125,8 @@ int RealRotations(const Equations& equations, const int* leading, int num_degree
   }
   RealSolutions<kSize> roots(&action);
   double x[kSize];
-  int num_roots = roots.FindX(0.0, false, 0, x, 0);
-  if (centre != nullptr) num_roots = roots.FindX(*centre, true, 0, x, num_roots);
+  int num_roots = roots.FindX(0.0, false, x, 0);
+  if (centre != nullptr) num_roots = roots.FindX(*centre, true, x, num_roots);
   if (centre != nullptr) roots.Refine(num_roots, x);
   std::array<double, 3> solutions[kSize];
   roots.Solve(num_roots, x, solutions);

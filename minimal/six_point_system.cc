@@ -126,16 +126,17 @@ Eigen::Vector4d NullVector(const double (*M)[4]) {
   int column[4] = {0, 1, 2, 3};
   std::copy(M[0], M[0] + 24, T[0]);
   for (int k = 0; k < 3; ++k) {
-    int row = k;
-    int best = k;
+    double largest = -1.0;
+    int entry = 5 * k;
     for (int r = k; r < 6; ++r) {
       for (int c = k; c < 4; ++c) {
-        if (std::abs(T[r][c]) > std::abs(T[row][best])) {
-          row = r;
-          best = c;
-        }
+        const double size = std::abs(T[r][c]);
+        entry = size > largest ? 4 * r + c : entry;
+        largest = std::max(size, largest);
       }
     }
+    const int row = entry / 4;
+    const int best = entry % 4;
     if (row != k) std::swap_ranges(T[k], T[k] + 4, T[row]);
     if (best != k) {
       for (int r = 0; r < 6; ++r) std::swap(T[r][k], T[r][best]);

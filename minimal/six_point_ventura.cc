@@ -1,7 +1,6 @@
 #include "rigel/minimal/six_point_ventura.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -9,6 +8,7 @@
 
 #include "rigel/minimal/polynomial_system.h"
 #include "rigel/minimal/six_point_system.h"
+#include "rigel/minimal/twenty_solutions.h"
 
 namespace rigel {
 namespace {
@@ -16,9 +16,9 @@ namespace {
 using polynomial_system::ActionMatrix;
 using polynomial_system::AddProduct;
 using polynomial_system::AddShifted;
+using polynomial_system::FindTwentySolutions;
 using polynomial_system::MacaulayMatrix;
 using polynomial_system::NumMonomials;
-using polynomial_system::RealSolutions;
 
 constexpr int kQuadric = NumMonomials(2);
 constexpr int kCubic = NumMonomials(3);
@@ -196,13 +196,8 @@ int Solve6ptVentura(const PreparedMatches& matches, const int* sample, Solutions
   constexpr int kLeading[] = {15};
   ActionMatrix<20> action;
   if (!macaulay.Reduce(kLeading, 1, &action)) return 0;
-  RealSolutions<20> roots(&action);
-  double x[20];
-  const int num_roots = roots.FindX(0.0, false, system.zero_motion_multiplicity(), x, 0);
-  // The multiple root of an intra-camera sample blurs those near it.
-  if (system.all_intra()) roots.Refine(num_roots, x);
-  std::array<double, 3> starts[20];
-  roots.Solve(num_roots, x, starts);
+  double starts[20][3];
+  const int num_roots = FindTwentySolutions(system.zero_motion_multiplicity(), &action, starts);
   for (int k = 0; k < num_roots; ++k) {
     Eigen::Vector3d r(starts[k][0], starts[k][1], starts[k][2]);
     Eigen::Vector4d v;

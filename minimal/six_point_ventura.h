@@ -15,9 +15,9 @@
 // rotation, 0.15 or 0.25 degrees in direction (medians, random axis; 100 times that at 10 degrees).
 //
 // Intra-camera samples: r = 0, t = 0 is a root whatever the matches are, a double one if the
-// centres are on one line. It is never returned; roots near it are refined on the matrix, because
-// the polynomial's coefficients do not tell them apart. Pure translation of such a sample is a
-// multiple root there; it is tested for directly and returned without scale.
+// centres are on one line. It is never returned; roots near it get a Newton step on the matrix,
+// because the polynomial's coefficients do not tell them apart. Pure translation of such a sample
+// is a multiple root there; it is tested for directly and returned without scale.
 //
 // Units: r in radians, t in metres. Degenerate, returns nothing: one centre in all; no motion seen
 // by intra-camera matches.
