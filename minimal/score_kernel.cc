@@ -124,9 +124,9 @@ RIGEL_KERNEL_BODY double Sum(const PixelArrays& pixels, const RayArrays* rays, c
       }
     }
     for (int i = block.size; i < kBlock; ++i) e[i] = 0.0;
-    for (int i = 0; i < 16; ++i) e[i] += e[i + 16];
-    for (int i = 0; i < 8; ++i) e[i] += e[i + 8];
-    sum += ((e[0] + e[4]) + (e[2] + e[6])) + ((e[1] + e[5]) + (e[3] + e[7]));
+    const Lanes even = (LanesAt(e) + LanesAt(e + 16)) + (LanesAt(e + 8) + LanesAt(e + 24));
+    const Lanes odd = (LanesAt(e + 4) + LanesAt(e + 20)) + (LanesAt(e + 12) + LanesAt(e + 28));
+    sum += SumOf(even + odd);
   }
   if (num_inliers != nullptr) *num_inliers += inliers;
   return sum;

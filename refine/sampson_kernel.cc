@@ -10,20 +10,7 @@ namespace {
 
 // Long enough for g++ to keep the loops, which it vectorizes.
 constexpr int kBlock = 64;
-constexpr int kLanes = 4;
 constexpr int kEntries = 9;  // of F
-
-// kLanes numbers side by side, in one register or two. Explicit vectors, as g++ keeps several sums
-// of one plain loop in registers only where they are of this type.
-typedef double Lanes __attribute__((vector_size(kLanes * sizeof(double))));
-typedef double Stored
-    __attribute__((vector_size(kLanes * sizeof(double)), aligned(sizeof(double)), may_alias));
-
-RIGEL_KERNEL_BODY const Stored& LanesAt(const double* values) {
-  return *reinterpret_cast<const Stored*>(values);
-}
-
-RIGEL_KERNEL_BODY double SumOf(const Lanes& a) { return (a[0] + a[2]) + (a[1] + a[3]); }
 
 // J = de/dF up to a factor f of the match, which enters by its square: products of rows need no
 // square root of it.
