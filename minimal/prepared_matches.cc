@@ -3,7 +3,7 @@
 namespace rigel {
 namespace {
 
-PreparedMatch Prepare(const RayPair& rays, const Alignment& alignment, const Match& match) {
+PreparedMatch PrepareOne(const RayPair& rays, const Alignment& alignment, const Match& match) {
   const Eigen::Vector3d p = alignment.A1 * rays.ray1.x;
   const Eigen::Vector3d r = alignment.A2 * rays.ray2.x;
   const Eigen::Vector3d s1 = alignment.A1 * rays.ray1.s;
@@ -40,25 +40,34 @@ PreparedMatches::PreparedMatches(const Rig& rig, const std::vector<Match>& match
 }
 
 PreparedMatches::PreparedMatches(const GroupedMatches& matches, const Alignment& alignment)
-    : alignment_(alignment) {
-  matches_.reserve(matches.size());
-  rays_.reserve(matches.size());
-  for (int k = 0; k < matches.size(); ++k) {
-    rays_.push_back(matches.rays(k));
-    matches_.push_back(Prepare(rays_.back(), alignment, matches.matches()[k]));
+    : alignment_(alignment),
+      matches_(matches.size()),
+      rays_(matches.size()),
+      grouped_(&matches),
+      ready_(matches.size(), 0) {}
+
+void PreparedMatches::Prepare(const int* sample, int size) {
+  if (grouped_ == nullptr) return;
+  for (int i = 0; i < size; ++i) {
+    const int k = sample[i];
+    if (ready_[k]) continue;
+    ready_[k] = 1;
+    rays_[k] = grouped_->rays(k);
+    matches_[k] = PrepareOne(rays_[k], alignment_, grouped_->matches()[k]);
   }
 }
 
 void PreparedMatches::Set(const Rig& rig, const std::vector<Match>& matches,
                           const Alignment& alignment) {
   alignment_ = alignment;
+  grouped_ = nullptr;
   matches_.clear();
   rays_.clear();
   matches_.reserve(matches.size());
   rays_.reserve(matches.size());
   for (const Match& match : matches) {
     rays_.push_back(MakeRayPair(rig, match));
-    matches_.push_back(Prepare(rays_.back(), alignment, match));
+    matches_.push_back(PrepareOne(rays_.back(), alignment, match));
   }
 }
 

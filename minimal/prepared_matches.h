@@ -45,8 +45,13 @@ class PreparedMatches {
   PreparedMatches() = default;
   PreparedMatches(const Rig& rig, const std::vector<Match>& matches, const Alignment& alignment);
 
-  // In grouped order.
+  // In grouped order, for RANSAC, which may draw few of them: a match is ready once Prepare() was
+  // told of it. `matches` must outlive this object.
   PreparedMatches(const GroupedMatches& matches, const Alignment& alignment);
+
+  // To be called before a sample of such matches is solved; those of the other constructor are
+  // ready. No heap.
+  void Prepare(const int* sample, int size);
 
   // Keeps the memory of the last frame pair.
   void Set(const Rig& rig, const std::vector<Match>& matches, const Alignment& alignment);
@@ -62,6 +67,8 @@ class PreparedMatches {
   Alignment alignment_;
   std::vector<PreparedMatch> matches_;
   std::vector<RayPair> rays_;
+  const GroupedMatches* grouped_ = nullptr;  // whose matches are prepared when drawn
+  std::vector<char> ready_;                  // of these
 };
 
 }  // namespace rigel

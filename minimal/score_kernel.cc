@@ -50,22 +50,37 @@ RIGEL_KERNEL_BODY void Errors(const PixelArrays& block, const double F[9], doubl
   }
 }
 
+// The first ray of a match in the second frame, g = R x1, and n = g x f with its second.
+struct Parallax {
+  double gx, gy, gz;
+  double nx, ny, nz;
+  double sin2;  // |n|^2
+};
+
+RIGEL_KERNEL_BODY Parallax ParallaxOf(const RayArrays& rays, int k, const double R[9]) {
+  const double x = rays.x1[k], y = rays.y1[k], z = rays.z1[k];
+  const double fx = rays.x2[k], fy = rays.y2[k], fz = rays.z2[k];
+  Parallax p;
+  p.gx = R[0] * x + R[1] * y + R[2] * z;
+  p.gy = R[3] * x + R[4] * y + R[5] * z;
+  p.gz = R[6] * x + R[7] * y + R[8] * z;
+  p.nx = p.gy * fz - p.gz * fy;
+  p.ny = p.gz * fx - p.gx * fz;
+  p.nz = p.gx * fy - p.gy * fx;
+  p.sin2 = p.nx * p.nx + p.ny * p.ny + p.nz * p.nz;
+  return p;
+}
+
 // Signs of the depths of match k, and its parallax: the test of cheirality.cc, and its names.
 RIGEL_KERNEL_BODY void DepthSigns(const RayArrays& rays, int k, const GroupMotion& m, double* n1,
                                   double* n2, double* sin2) {
-  const double x = rays.x1[k], y = rays.y1[k], z = rays.z1[k];
   const double fx = rays.x2[k], fy = rays.y2[k], fz = rays.z2[k];
-  const double gx = m.R[0] * x + m.R[1] * y + m.R[2] * z;
-  const double gy = m.R[3] * x + m.R[4] * y + m.R[5] * z;
-  const double gz = m.R[6] * x + m.R[7] * y + m.R[8] * z;
-  const double nx = gy * fz - gz * fy;
-  const double ny = gz * fx - gx * fz;
-  const double nz = gx * fy - gy * fx;
-  *sin2 = nx * nx + ny * ny + nz * nz;
-  *n1 = (fy * m.b[2] - fz * m.b[1]) * nx + (fz * m.b[0] - fx * m.b[2]) * ny +
-        (fx * m.b[1] - fy * m.b[0]) * nz;
-  *n2 = (gy * m.b[2] - gz * m.b[1]) * nx + (gz * m.b[0] - gx * m.b[2]) * ny +
-        (gx * m.b[1] - gy * m.b[0]) * nz;
+  const Parallax p = ParallaxOf(rays, k, m.R);
+  *sin2 = p.sin2;
+  *n1 = (fy * m.b[2] - fz * m.b[1]) * p.nx + (fz * m.b[0] - fx * m.b[2]) * p.ny +
+        (fx * m.b[1] - fy * m.b[0]) * p.nz;
+  *n2 = (p.gy * m.b[2] - p.gz * m.b[1]) * p.nx + (p.gz * m.b[0] - p.gx * m.b[2]) * p.ny +
+        (p.gx * m.b[1] - p.gy * m.b[0]) * p.nz;
 }
 
 // Sets e to t2 where the match at begin + i lies behind a camera.
@@ -109,9 +124,9 @@ RIGEL_KERNEL_BODY double Sum(const PixelArrays& pixels, const RayArrays* rays, c
       }
     }
     for (int i = block.size; i < kBlock; ++i) e[i] = 0.0;
-    for (int i = 0; i < 16; ++i) e[i] += e[i + 16];
-    for (int i = 0; i < 8; ++i) e[i] += e[i + 8];
-    sum += ((e[0] + e[4]) + (e[2] + e[6])) + ((e[1] + e[5]) + (e[3] + e[7]));
+    const Lanes even = (LanesAt(e) + LanesAt(e + 16)) + (LanesAt(e + 8) + LanesAt(e + 24));
+    const Lanes odd = (LanesAt(e + 4) + LanesAt(e + 20)) + (LanesAt(e + 12) + LanesAt(e + 28));
+    sum += SumOf(even + odd);
   }
   if (num_inliers != nullptr) *num_inliers += inliers;
   return sum;
@@ -148,6 +163,11 @@ RIGEL_KERNEL_BODY int Select(const PixelArrays& pixels, const RayArrays& rays, c
   return total;
 }
 
+RIGEL_KERNEL_BODY void AllParallax(const RayArrays& rays, const double R[9], int size,
+                                   double* sin2) {
+  for (int k = 0; k < size; ++k) sin2[k] = ParallaxOf(rays, k, R).sin2;
+}
+
 RIGEL_KERNEL_BODY void Count(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
                              const GroupMotion& motion, double t2, DepthCounts* counts) {
   int in_front = 0, behind = 0, decided = 0;
@@ -173,6 +193,11 @@ RIGEL_KERNEL_BODY void Count(const PixelArrays& pixels, const RayArrays& rays, c
 }
 
 #if RIGEL_HAS_AVX2_PATH
+RIGEL_TARGET_AVX2 void AllParallaxAvx2(const RayArrays& rays, const double R[9], int size,
+                                       double* sin2) {
+  AllParallax(rays, R, size, sin2);
+}
+
 RIGEL_TARGET_AVX2 void CountAvx2(const PixelArrays& pixels, const RayArrays& rays,
                                  const double F[9], const GroupMotion& motion, double t2,
                                  DepthCounts* counts) {
@@ -244,6 +269,14 @@ int SelectInFront(const PixelArrays& pixels, const RayArrays& rays, const double
   }
 #endif
   return Select(pixels, rays, F, motion, t2, squared_errors, inliers);
+}
+
+void SquaredParallax(const RayArrays& rays, const double R[9], int size, double* sin2,
+                     [[maybe_unused]] CpuPath path) {
+#if RIGEL_HAS_AVX2_PATH
+  if (path == CpuPath::kAvx2) return AllParallaxAvx2(rays, R, size, sin2);
+#endif
+  AllParallax(rays, R, size, sin2);
 }
 
 void CountDepths(const PixelArrays& pixels, const RayArrays& rays, const double F[9],

@@ -79,6 +79,11 @@ int SelectInFront(const PixelArrays& pixels, const RayArrays& rays, const double
                   const GroupMotion& motion, double t2, double* squared_errors, char* inliers,
                   CpuPath path = BestCpuPath());
 
+// Squared sines of the parallax: of the angle between the rays of each match once the first is
+// turned by the row-major rotation R.
+void SquaredParallax(const RayArrays& rays, const double R[9], int size, double* sin2,
+                     CpuPath path = BestCpuPath());
+
 // Where the matches with r^2 < t2 lie: kInFront, kBehind, and both with kMixed, which are decided.
 struct DepthCounts {
   int in_front = 0;

@@ -53,6 +53,7 @@ class FramePairSolver {
     return true;
   }
   int MinimalSolver(const int* sample, Solutions* solutions) const {
+    prepared_.Prepare(sample, solver_.sample_size);
     return solver_.solve(prepared_, sample, solutions);
   }
   // Does not look at depths, which only add to the score; the sign of t matters little to it.
@@ -145,7 +146,7 @@ class FramePairSolver {
   const GroupedMatches& matches_;
   GroupedMatches subset_;
   GroupedMatches sign_subset_;
-  PreparedMatches prepared_;
+  mutable PreparedMatches prepared_;
   mutable ProsacSampler sampler_;
   const RansacOptions& options_;
   std::optional<LossTable> loss_;
@@ -253,7 +254,7 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
       ransac = result;
       solver = candidate;
     }
-    if (result.found &&
+    if (result.found && candidate != solvers.back() &&
         !IsDoubtful(pair.prior, *candidate, result.best, matches, options.ransac.threshold_px)) {
       break;
     }

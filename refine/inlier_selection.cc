@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 namespace rigel {
 namespace {
@@ -16,13 +18,21 @@ class Histogram {
   static constexpr int kBins = 96;
   static constexpr int kReach = 4;
   static int Bin(double sin2_parallax) {
-    // floor(4 log2(sine)) = floor(2 log2(sin^2)), sin^2 = m 2^e with m in [1/2, 1).
-    constexpr double kHalfRoot2 = 0.70710678118654752440;
-    int exponent = 0;
-    const double m = std::frexp(std::max(sin2_parallax, 1e-14), &exponent);
-    return std::clamp(kBins - 2 + 2 * (exponent - 1) + (m >= kHalfRoot2 ? 1 : 0), 1, kBins - 2);
+    // floor(4 log2(sine)) = floor(2 log2(sin^2)), sin^2 = m 2^e with m in [1, 2): from its bits,
+    // which are in order.
+    constexpr uint64_t kRoot2Bits = 0x6a09e667f3bcd;
+    constexpr int kMantissa = 52, kBias = 1023;
+    const double value = std::max(sin2_parallax, 1e-14);
+    uint64_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    const int exponent = static_cast<int>(bits >> kMantissa) - kBias;
+    const bool upper_half = (bits & ((uint64_t{1} << kMantissa) - 1)) >= kRoot2Bits;
+    return std::clamp(kBins - 2 + 2 * exponent + (upper_half ? 1 : 0), 1, kBins - 2);
   }
-  void Add(int bin) { ++counts_[bin]; }
+  void Add(int bin) {
+    ++counts_[bin];
+    ++total_;
+  }
   // How many there are within a factor of 1.3 of the parallax of each bin, as the mean over a wider
   // neighbourhood tells: down to a half, as the parallax of inliers ends somewhere, and up to
   // `above` bins.
@@ -37,29 +47,18 @@ class Histogram {
     }
     return near;
   }
+  int Total() const { return total_; }
   // sin^2 of the 90th percentile.
   double HighSin2() const {
-    int total = 0;
-    for (const int count : counts_) total += count;
     int bin = kBins - 1;
-    for (int above = counts_[bin]; bin > 0 && above < 0.1 * total;) above += counts_[--bin];
+    for (int above = counts_[bin]; bin > 0 && above < 0.1 * total_;) above += counts_[--bin];
     return std::exp2(2.0 * (bin - (kBins - 2) + 1) / 4.0);
   }
 
  private:
   std::array<int, kBins> counts_{};
+  int total_ = 0;
 };
-
-// Squared sines of the parallax, what is left of the angle of a match's rays without rotation.
-void SquaredParallax(const RayArrays& rays, const Eigen::Matrix3d& R, int size, double* sin2) {
-  for (int k = 0; k < size; ++k) {
-    const Eigen::Vector3d g = R * Eigen::Vector3d(rays.x1[k], rays.y1[k], rays.z1[k]);
-    const double x = g.y() * rays.z2[k] - g.z() * rays.y2[k];
-    const double y = g.z() * rays.x2[k] - g.x() * rays.z2[k];
-    const double z = g.x() * rays.y2[k] - g.y() * rays.x2[k];
-    sin2[k] = x * x + y * y + z * z;
-  }
-}
 
 }  // namespace
 
@@ -73,6 +72,7 @@ int SelectPlausibleInliers(const GroupedMatches& matches, const Pose& pose, doub
   inliers->resize(n);
   std::vector<char> bins(n);
   std::vector<double> sin2(n);
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = pose.R;
   const double gate2 = gate_px * gate_px;
   int count = 0, num_beyond = 0;
   for (const MatchGroup& group : matches.groups()) {
@@ -83,7 +83,7 @@ int SelectPlausibleInliers(const GroupedMatches& matches, const Pose& pose, doub
     char* selected = inliers->data() + group.begin;
     SelectInFront(matches.Pixels(group), rays, F.data(), matches.MotionOf(group, pose, gate_px),
                   kBandEnd * kBandEnd * gate2, errors, selected);
-    SquaredParallax(rays, pose.R, group.size, sin2.data() + group.begin);
+    SquaredParallax(rays, R.data(), group.size, sin2.data() + group.begin);
     for (int k = 0; k < group.size; ++k) {
       if (!selected[k]) continue;
       const int bin = Histogram::Bin(sin2[group.begin + k]);
@@ -98,11 +98,14 @@ int SelectPlausibleInliers(const GroupedMatches& matches, const Pose& pose, doub
     }
   }
   if (num_beyond == 0) return count;
-  const double high2[2] = {within[kIntra].HighSin2(), within[kInter].HighSin2()};
-  const std::array<double, Histogram::kBins> within_near[2] = {within[kIntra].Near(1),
-                                                               within[kInter].Near(1)};
-  const std::array<double, Histogram::kBins> beyond_near[2] = {
-      beyond[kIntra].Near(Histogram::kReach), beyond[kInter].Near(Histogram::kReach)};
+  double high2[2] = {};
+  std::array<double, Histogram::kBins> within_near[2], beyond_near[2];
+  for (const int kind : {kIntra, kInter}) {
+    if (within[kind].Total() == 0) continue;
+    high2[kind] = within[kind].HighSin2();
+    within_near[kind] = within[kind].Near(1);
+    beyond_near[kind] = beyond[kind].Near(Histogram::kReach);
+  }
   for (const MatchGroup& group : matches.groups()) {
     const int kind = group.camera1 == group.camera2 ? kIntra : kInter;
     for (int k = group.begin; k < group.begin + group.size; ++k) {

@@ -60,7 +60,9 @@ class Refiner {
     return options_.form == RefineForm::kPrior || options_.form == RefineForm::kPriorDepths;
   }
   bool SelectInliers(const Pose& pose);
-  void EstimateNoise();
+  double MedianResidual() const;
+  void SetNoise();
+  double EstimateNoise();
   bool SetWeights(const Pose& pose);
   bool ReferenceIsStale(const Pose& pose) const;
   Matrix6d WithPrior(Matrix6d information, const Pose& pose) const;
@@ -94,7 +96,8 @@ class Refiner {
   std::vector<double> match_weights_;       // by the noise of the camera pair; 0: no inlier
   std::vector<double> weights_;             // see SetWeights()
   int num_inliers_ = 0;
-  bool judges_parallax_ = false;  // inlier_selection.h; at a minimum only
+  std::optional<Pose> selected_at_;  // what mask_ belongs to
+  bool judges_parallax_ = false;     // inlier_selection.h; at a minimum only
   double noise_px_ = 1.0;
   bool scale_free_ = true;
   struct ScaleQuestion {
@@ -114,8 +117,10 @@ bool Refiner::Fail(Termination termination, const std::string& message) {
   return false;
 }
 
-// True if the selection changed.
+// True if the selection changed. Asked for the same motion more than once.
 bool Refiner::SelectInliers(const Pose& pose) {
+  if (selected_at_ && selected_at_->R == pose.R && selected_at_->t == pose.t) return false;
+  selected_at_ = pose;
   previous_mask_ = mask_;
   const double gate =
       std::max(options_.threshold_px, kGateSigmas * options_.noise_px.value_or(0.0));
@@ -125,37 +130,42 @@ bool Refiner::SelectInliers(const Pose& pose) {
   return mask_ != previous_mask_;
 }
 
-void Refiner::EstimateNoise() {
-  std::vector<double> errors;
-  errors.reserve(num_inliers_);
+double Refiner::MedianResidual() const {
+  // One more than there are inliers: what is no inlier is overwritten.
+  std::vector<double> errors(num_inliers_ + 1);
+  size_t n = 0;
   for (size_t k = 0; k < mask_.size(); ++k) {
-    if (mask_[k]) errors.push_back(squared_errors_[k]);
+    errors[n] = squared_errors_[k];
+    n += mask_[k] != 0 ? 1 : 0;
   }
-  summary_.median_residual_px = errors.empty() ? -1.0 : std::sqrt(MedianInPlace(&errors));
+  errors.resize(n);
+  return errors.empty() ? -1.0 : std::sqrt(MedianInPlace(&errors));
+}
+
+// A noise level that is given is that of all.
+void Refiner::SetNoise() {
+  match_weights_.assign(mask_.begin(), mask_.end());
+  // The floor keeps noise-free problems regular.
+  noise_px_ = std::max(options_.noise_px.has_value() ? *options_.noise_px : EstimateNoise(), 1e-9);
+  summary_.noise_px = noise_px_;
+}
+
+// Weighs the matches by the noise of their camera pairs and returns that of all.
+double Refiner::EstimateNoise() {
+  const double median = MedianResidual();
   // Residuals of as many matches as parameters are zero whatever the noise is. With little
   // redundancy the threshold says more of the noise than they do: it is meant to be three sigma.
   constexpr int kParameters = 6;
   constexpr int kMinRedundancy = 10;
   const int redundancy = num_inliers_ - kParameters;
-  double estimated = 1.4826 * summary_.median_residual_px;
-  if (redundancy < kMinRedundancy) {
-    estimated = std::max(estimated, options_.threshold_px / 3.0);
-  } else {
-    estimated *= std::sqrt(num_inliers_ / static_cast<double>(redundancy));
+  const std::vector<double> by_group = GroupNoiseWeights(matches_, squared_errors_, mask_, median);
+  for (size_t g = 0; g < by_group.size(); ++g) {
+    const MatchGroup& group = matches_.groups()[g];
+    for (int k = group.begin; k < group.begin + group.size; ++k) match_weights_[k] *= by_group[g];
   }
-  match_weights_.assign(mask_.begin(), mask_.end());
-  // A noise level that is given is that of all.
-  if (!options_.noise_px.has_value()) {
-    const std::vector<double> by_group =
-        GroupNoiseWeights(matches_, squared_errors_, mask_, summary_.median_residual_px);
-    for (size_t g = 0; g < by_group.size(); ++g) {
-      const MatchGroup& group = matches_.groups()[g];
-      for (int k = group.begin; k < group.begin + group.size; ++k) match_weights_[k] *= by_group[g];
-    }
-  }
-  // The floor keeps noise-free problems regular.
-  noise_px_ = std::max(options_.noise_px.value_or(estimated), 1e-9);
-  summary_.noise_px = noise_px_;
+  const double noise = 1.4826 * median;
+  if (redundancy < kMinRedundancy) return std::max(noise, options_.threshold_px / 3.0);
+  return noise * std::sqrt(num_inliers_ / static_cast<double>(redundancy));
 }
 
 Matrix6d Refiner::Information(const Pose& pose) const {
@@ -242,7 +252,7 @@ int Refiner::ChooseReference(const Pose& pose, RotationForm rotation,
                              TranslationForm translation) const {
   constexpr size_t kMaxCandidates = 16;
   constexpr double kMinParallax = 1e-6;
-  const double limit = std::max(summary_.median_residual_px, 1e-9);
+  const double limit = std::max(MedianResidual(), 1e-9);
   std::vector<std::pair<double, int>> candidates;  // parallax, match
   for (int k = 0; k < matches_.size(); ++k) {
     if (!mask_[k] || squared_errors_[k] > limit * limit) continue;
@@ -359,14 +369,14 @@ bool Refiner::ReferenceIsStale(const Pose& pose) const {
 // Selection of inliers and least squares in turn until the selection stays.
 bool Refiner::Iterate(Pose* pose) {
   SelectInliers(*pose);
-  EstimateNoise();
+  SetNoise();
   SetWeights(*pose);
   for (int round = 0; round < options_.max_rounds; ++round) {
     scale_free_ = ScaleIsFree(*pose);
     if (!Solve(scale_free_, pose)) return false;
     ++summary_.num_rounds;
     const bool reselected = SelectInliers(*pose);
-    EstimateNoise();
+    SetNoise();
     const bool reweighted = SetWeights(*pose);
     if (!reselected && !reweighted && !ReferenceIsStale(*pose)) break;
   }
@@ -449,7 +459,7 @@ RefineSummary Refiner::Run(Pose* pose) {
   // Matches that hardly determine |t| would not bring it there from afar.
   if (options_.scale == ScaleMode::kFixed || WeighsDistance()) TakeDistance(&result);
   SelectInliers(result);
-  EstimateNoise();
+  SetNoise();
   if (SearchesScale(result)) {
     ResolveSignAndScale(sign_subset_, options_.threshold_px, &result);
   }
@@ -470,10 +480,12 @@ RefineSummary Refiner::Run(Pose* pose) {
   // Are there inliers that fit by chance?
   if (done) {
     judges_parallax_ = true;
+    selected_at_.reset();
     if (SelectInliers(result)) done = Iterate(&result);
   }
   // What is said of the scale must be said of the final motion.
   if (done && ScaleIsFree(result) != scale_free_) done = Iterate(&result);
+  summary_.median_residual_px = MedianResidual();
   if (!done) return summary_;
 
   FillUncertainty(result);

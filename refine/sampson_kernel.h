@@ -35,9 +35,10 @@ struct SampsonKernelOptions {
 };
 
 // `F` is the row-major centred fundamental matrix, `weights` one number a match: matches with 0 are
-// left out. A match whose squared gradient is not above rounding2 (|p1|^2 + |p2|^2) is at an
-// epipole: its residual and derivative are zero. Without a gradient (`derivatives` false) only the
-// cost is set. The bits do not depend on the path.
+// left out. The pixels are read up to a multiple of kKernelPadding: any finite numbers. A match
+// whose squared gradient is not above rounding2 (|p1|^2 + |p2|^2) is at an epipole: its residual
+// and derivative are zero. Without a gradient (`derivatives` false) only the cost is set. The bits
+// do not depend on the path.
 void SumSampson(const SampsonKernelOptions& options, const PixelArrays& pixels,
                 const double* weights, const double F[9], double rounding2, bool derivatives,
                 SampsonSums* sums, CpuPath path = BestCpuPath());

@@ -94,7 +94,7 @@ ParameterVector DampedStep(const ParameterEquations& at, double mu) {
 
 void PackedMatches::Set(const GroupedMatches& matches, const std::vector<double>& all_weights) {
   for (std::vector<double>* values : {&x1, &y1, &x2, &y2, &weights}) {
-    values->resize(matches.size());
+    values->resize(matches.size() + kKernelPadding);
   }
   groups.clear();
   int n = 0;

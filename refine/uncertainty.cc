@@ -56,20 +56,31 @@ void EpipoleWeights(const GroupedMatches& matches, const Pose& pose, double nois
 
 namespace {
 
-double ParallaxPx(const GroupedMatches& matches, int k, const Pose& pose) {
-  const PinholeCamera& c = matches.rig().cameras[matches.matches()[k].camera2].intrinsics;
-  const RayPair& rays = matches.rays(k);
-  return 0.5 * (c.fx + c.fy) * (pose.R * rays.ray1.x).cross(rays.ray2.x).norm();
+// Appends `factor` times the parallax in pixels of those of the group's matches whose weight is not
+// zero, squared.
+template <class Weight>
+void AppendSquaredParallaxPx(const GroupedMatches& matches, const MatchGroup& group,
+                             const std::vector<Weight>& weights, const Pose& pose, double factor,
+                             std::vector<double>* squares) {
+  const PinholeCamera& c = matches.rig().cameras[group.camera2].intrinsics;
+  const double pixels = factor * 0.5 * (c.fx + c.fy);
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = pose.R;
+  size_t end = squares->size();
+  squares->resize(end + group.size);
+  double* sin2 = squares->data() + end;
+  SquaredParallax(matches.Directions(group), R.data(), group.size, sin2);
+  for (int k = 0; k < group.size; ++k) {
+    (*squares)[end] = pixels * pixels * sin2[k];
+    end += weights[group.begin + k] != 0 ? 1 : 0;
+  }
+  squares->resize(end);
 }
 
 double MedianParallaxPx(const GroupedMatches& matches, const MatchGroup& group,
                         const std::vector<double>& weights, const Pose& pose) {
-  std::vector<double> parallax;
-  for (int k = group.begin; k < group.begin + group.size; ++k) {
-    if (weights[k] != 0.0) parallax.push_back(ParallaxPx(matches, k, pose));
-  }
-  if (parallax.empty()) return 0.0;
-  return MedianInPlace(&parallax);
+  std::vector<double> squares;
+  AppendSquaredParallaxPx(matches, group, weights, pose, 1.0, &squares);
+  return squares.empty() ? 0.0 : std::sqrt(MedianInPlace(&squares));
 }
 
 }  // namespace
@@ -242,19 +253,18 @@ std::string WeakestDirection(const Matrix6d& covariance, const Eigen::Vector3d& 
 
 double ParallaxPercentilePx(const GroupedMatches& matches, const std::vector<char>& mask,
                             const Pose& pose) {
-  std::vector<double> parallax;
-  for (int k = 0; k < matches.size(); ++k) {
-    const Match& m = matches.matches()[k];
-    if (!mask[k] || !m.IsIntra()) continue;
-    const Eigen::Vector3d& s = matches.rig().cameras[m.camera1].s;
+  std::vector<double> squares;
+  for (const MatchGroup& group : matches.groups()) {
+    if (group.camera1 != group.camera2) continue;
+    const Eigen::Vector3d& s = matches.rig().cameras[group.camera1].s;
     const double arm = (pose.R * s - s).norm();
     const double share = pose.t.norm() > 0 ? pose.t.norm() / (pose.t.norm() + arm) : 0.0;
-    parallax.push_back(share * ParallaxPx(matches, k, pose));
+    AppendSquaredParallaxPx(matches, group, mask, pose, share, &squares);
   }
-  if (parallax.empty()) return std::numeric_limits<double>::infinity();
-  const auto nth = parallax.begin() + static_cast<long>(parallax.size() * 4 / 5);
-  std::nth_element(parallax.begin(), nth, parallax.end());
-  return *nth;
+  if (squares.empty()) return std::numeric_limits<double>::infinity();
+  const auto nth = squares.begin() + static_cast<long>(squares.size() * 4 / 5);
+  std::nth_element(squares.begin(), nth, squares.end());
+  return std::sqrt(*nth);
 }
 
 }  // namespace rigel

@@ -118,5 +118,22 @@ TEST(PreparedMatches, SetForgetsTheLastFramePair) {
   EXPECT_EQ(PreparedMatches().size(), 0);
 }
 
+TEST(PreparedMatches, OfAGroupAreThoseOfTheListOncePrepared) {
+  const Problem p = MakeProblem(1);
+  const GroupedMatches grouped(p.rig, p.matches);
+  PreparedMatches prepared(grouped, p.alignment);
+  ASSERT_EQ(prepared.size(), grouped.size());
+  const int sample[] = {3, 0, 3};
+  prepared.Prepare(sample, 3);
+  for (const int k : sample) {
+    const int original = grouped.original(k);
+    EXPECT_EQ(prepared[k].K0, p.prepared[original].K0);
+    EXPECT_EQ(prepared[k].Ys, p.prepared[original].Ys);
+    EXPECT_EQ(prepared[k].camera2, p.prepared[original].camera2);
+    EXPECT_EQ(prepared.rays(k).ray1.x, p.prepared.rays(original).ray1.x);
+  }
+  EXPECT_EQ(prepared.alignment().A2, p.alignment.A2);
+}
+
 }  // namespace
 }  // namespace rigel

@@ -83,6 +83,7 @@ class Problem {
     rays.ray2.x = -rays.ray2.x;
     Set(k, rays);
   }
+  const RayPair& Rays(int k) const { return rays_[k]; }
   Cheirality Side(int k, double min_sin) const { return TestCheirality(pose, rays_[k], min_sin); }
   bool Behind(int k, double min_sin) const {
     const Cheirality c = Side(k, min_sin);
@@ -309,6 +310,25 @@ TEST(ScoreKernel, DepthsAreJudgedAsInCore) {
       }
     }
     EXPECT_GT(count, 500);
+  }
+}
+
+TEST(ScoreKernel, ParallaxIsTheSineBetweenTheRaysWithoutRotation) {
+  for (int size = 0; size < 80; ++size) {
+    const Problem p(size, size);
+    const RowMajor3d R = p.pose.R;
+    for (const CpuPath path : kPaths) {
+      std::vector<double> sin2(size);
+      SquaredParallax(p.rays(), R.data(), size, sin2.data(), path);
+      for (int k = 0; k < size; ++k) {
+        const RayPair rays = p.Rays(k);
+        EXPECT_NEAR(sin2[k], (R * rays.ray1.x).cross(rays.ray2.x).squaredNorm(), 1e-15);
+      }
+    }
+    std::vector<double> baseline(size), best(size);
+    SquaredParallax(p.rays(), R.data(), size, baseline.data(), CpuPath::kBaseline);
+    SquaredParallax(p.rays(), R.data(), size, best.data(), BestCpuPath());
+    EXPECT_EQ(baseline, best);
   }
 }
 
