@@ -1,5 +1,7 @@
 #include "rigel/minimal/four_point_lee.h"
 
+#include <algorithm>
+
 #include "rigel/minimal/direct_sample.h"
 #include "rigel/minimal/polynomial.h"
 
@@ -20,12 +22,8 @@ void Minor(const double* p0, const double* q0, const double* p1, const double* q
 constexpr int kSplits[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
                                {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};
 
-}  // namespace
-
-int Solve4ptLee(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
-  solutions->clear();
-  const DirectSample rows(matches, sample);
-  if (!rows.has_parallax()) return 0;
+// Coefficients c[0..8], ascending in z = tan(a/2), of the determinant.
+void Determinant(const DirectSample& rows, double c[9]) {
   // (1 + z^2) times each entry in the frame of the second moment: the columns of `rows` turned back
   // by a / 2; k of a deflated sample is divided by z.
   double x[4][3], y[4][3], z[4][3], k[4][3];
@@ -45,7 +43,7 @@ int Solve4ptLee(const PreparedMatches& matches, const int* sample, Solutions* so
   }
 
   // Laplace expansion: minors of columns (x, z) of rows (i, j) with those of (y, k) of the others.
-  double c[9] = {};
+  std::fill(c, c + 9, 0.0);
   for (const auto& [i, j, p, q] : kSplits) {
     double a[5], b[5];
     Minor(x[i], z[i], x[j], z[j], a);
@@ -54,7 +52,16 @@ int Solve4ptLee(const PreparedMatches& matches, const int* sample, Solutions* so
       for (int l = 0; l < 5; ++l) c[n + l] += a[n] * b[l];
     }
   }
+}
 
+}  // namespace
+
+int Solve4ptLee(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
+  solutions->clear();
+  const DirectSample rows(matches, sample);
+  if (!rows.has_parallax()) return 0;
+  double c[9];
+  Determinant(rows, c);
   // The determinant of degree 8 is 1 + z^2 times one of degree 6, as (x, z) turn by a rotation: the
   // quotient has the same real roots. That of a deflated sample is a quintic.
   double sextic[7];

@@ -7,8 +7,9 @@
 
 Needs valgrind, objdump, addr2line and Google Benchmark. Callgrind counts how often each instruction
 runs between the call of a solver and its return, on the intra-camera samples of kernels_benchmark.
-Means per sample. A packed instruction counts as two operations. The operations within libm (sine,
-cosine, cube root) are among the instructions, step "other", and not among the operations.
+Means per sample. A packed instruction counts as two operations, or four of 256 bits. The operations
+within libm (sine, cosine, cube root) are among the instructions, step "other", and not among the
+operations.
 """
 import collections
 import os
@@ -30,7 +31,8 @@ STEPS = [
     ('motions', r'AddSolution|PolishSixPoint|::Polish\(|::Add\(|AddPolished|ExpSO3|NullVector|'
                 r'SolveSixBySix|EliminateColumn'),
     ('roots', r'RealRoots|CubicStarts|PolishRoots|RealSolutions|RootFinder|RootsInClosedForm|'
-              r'Isolated|Newton|Bracket'),
+              r'Isolated|Newton|Bracket|Hessenberg|CharacteristicPoly|SolveAll|'
+              r'PrepareAvx2|PrepareBaseline'),
     ('elimination', r'Determinant|AddMinors|MakeEquations|CombineRows|MacaulayMatrix|AddProduct|'
                     r'AddBilinear|RealRotations|operator\(\)'),
     ('set-up', r'SetFourPoint|SetPlanar|SetReference|SetRow|DirectSample|SixPointSystem|MakeRow')]
@@ -69,7 +71,7 @@ def instruction_counts(path, program):
 
 
 def disassembly(program):
-    """{address: mnemonic} and {function: address}."""
+    """{address: (mnemonic, doubles of a packed one)} and {function: address}."""
     code, starts = {}, {}
     out = subprocess.run(['objdump', '-dC', '--no-show-raw-insn', program], check=True,
                          capture_output=True, text=True).stdout
@@ -79,7 +81,7 @@ def disassembly(program):
             starts[match.group(2)] = int(match.group(1), 16)
         match = re.match(r'\s+([0-9a-f]+):\s+(\S+)', line)
         if match:
-            code[int(match.group(1), 16)] = match.group(2)
+            code[int(match.group(1), 16)] = match.group(2), 4 if '%ymm' in line else 2
     return code, starts
 
 
@@ -128,10 +130,11 @@ def main():
         shares, operations = collections.Counter(), collections.Counter()
         for address, count in counts.items():
             shares[steps.get(address, 'other')] += count
+            mnemonic, packed = code.get(address, ('', 0))
             for operation, pattern in OPERATIONS:
-                match = re.match(pattern + '$', code.get(address, ''))
+                match = re.match(pattern + '$', mnemonic)
                 if match:
-                    operations[operation] += count * (2 if match.groups()[-1] == 'p' else 1)
+                    operations[operation] += count * (packed if match.groups()[-1] == 'p' else 1)
         total = sum(counts.values())
         flops = sum(operations.values())
         print('%-22s %9.0f %7.0f ' % (name, total / calls, flops / calls) +
