@@ -3,6 +3,7 @@
 //
 //   build/release/bin/kernels_benchmark --benchmark_repetitions=9
 //   --benchmark_report_aggregates_only
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -32,6 +33,19 @@ FramePair ScenePair(int num_matches, double inter_share, double noise_px, Motion
   if (!MakeScenePair(options, index, &pair, &error)) std::abort();
   return pair;
 }
+
+// items_per_second: the clock that floors are counted in, by a chain of shifts and exclusive ors,
+// two cycles a step.
+void BM_Clock(benchmark::State& state) {
+  constexpr int kSteps = 1000;
+  uint64_t x = 0x9e3779b97f4a7c15;
+  for (auto _ : state) {
+    for (int k = 0; k < kSteps; ++k) x ^= x >> 7;
+    benchmark::DoNotOptimize(x);
+  }
+  state.SetItemsProcessed(state.iterations() * 2 * kSteps);
+}
+BENCHMARK(BM_Clock);
 
 void BM_Solver(benchmark::State& state, const SolverInfo* solver, double inter_share) {
   // Enough samples that the branch predictor cannot learn them.
