@@ -1,6 +1,6 @@
-// Roots of cubics, quartics and of quintics with one root far off, in closed form: several times as
-// fast as isolation. Each function says where rounding leaves the number of real roots open, and
-// polynomial.h then isolates them: no root is lost.
+// Roots of cubics, quartics, quintics with one root far off and sextics with two, in closed form:
+// several times as fast as isolation. Each function says where rounding leaves the number of real
+// roots open, and polynomial.h then isolates them: no root is lost.
 //
 // Coefficients ascend, as in polynomial.h. No heap.
 #ifndef RIGEL_MINIMAL_CLOSED_FORM_ROOTS_H_
@@ -114,38 +114,83 @@ inline int QuarticStarts(const double* c, double* x) {
   return count;
 }
 
-// All real roots of a quartic or of a quintic whose largest root is far from the others; kUndecided
-// if the number of roots is not certain. `c` is scaled such that its typical roots are near 1.
+// A quintic without its largest root 1 / y, if that is far from the others.
+inline bool SplitFarRoot(const double* c, double* quartic, double* y) {
+  constexpr double kFar = 0.25;
+  constexpr double kConverged = 1e-13;
+  *y = -c[5] / c[4];
+  if (!(std::abs(*y) < kFar)) return false;
+  double step = *y;
+  for (int n = 0; n < 6 && std::abs(step) > 1e-8 * std::abs(*y); ++n) {
+    double value = c[0];
+    double slope = 0.0;
+    for (int k = 1; k <= 5; ++k) {
+      slope = slope * *y + value;
+      value = value * *y + c[k];
+    }
+    step = value / slope;
+    *y -= step;
+  }
+  if (!(std::abs(*y) < kFar)) return false;
+  // What is left without it, from the smallest coefficients up: stable for the largest root.
+  quartic[0] = c[0];
+  for (int k = 1; k <= 4; ++k) quartic[k] = c[k] + *y * quartic[k - 1];
+  return std::abs(c[5] + *y * quartic[4]) <= kConverged * std::abs(c[5]);
+}
+
+// A sextic without its two largest roots, if they are far from the others: those of
+// 1 + b x + g x^2.
+inline bool SplitFarPair(const double* c, double* quartic, double* b, double* g) {
+  constexpr int kMaxSteps = 8;  // each divides the error by how far the pair is
+  constexpr double kConverged = 1e-10;
+  *g = c[6] / c[4];
+  *b = c[5] / c[4];
+  quartic[0] = c[0];
+  for (int n = 0; n < kMaxSteps; ++n) {
+    // The quotient from the smallest coefficients up; b and g such that nothing is left over.
+    quartic[1] = c[1] - *b * quartic[0];
+    quartic[2] = c[2] - *b * quartic[1] - *g * quartic[0];
+    quartic[3] = c[3] - *b * quartic[2] - *g * quartic[1];
+    quartic[4] = c[4] - *b * quartic[3] - *g * quartic[2];
+    const double inverse = 1.0 / quartic[4];
+    const double next_g = c[6] * inverse;
+    const double next_b = (c[5] - next_g * quartic[3]) * inverse;
+    const double change = std::abs(next_g - *g) + std::abs(next_b - *b) * std::abs(*b);
+    *g = next_g;
+    *b = next_b;
+    if (change <= kConverged * (std::abs(next_g) + next_b * next_b)) return true;
+  }
+  return false;
+}
+
+// All real roots of a quartic, of a quintic whose largest root is far from the others or of a
+// sextic whose two largest are; kUndecided if the number of roots is not certain. `c` is scaled
+// such that its typical roots are near 1.
 template <int N>
 inline int RootsInClosedForm(const double* c, double* roots) {
-  static_assert(N == 4 || N == 5);
+  static_assert(N >= 4 && N <= 6);
   double quartic[5];
   int count = 0;
-  double y = 0.0;  // 1 / x for the far root x
-  if constexpr (N == 5) {
-    constexpr double kFar = 0.25;
-    constexpr double kConverged = 1e-13;
-    y = -c[5] / c[4];
-    if (!(std::abs(y) < kFar)) return kUndecided;
-    double step = y;
-    for (int n = 0; n < 6 && std::abs(step) > 1e-8 * std::abs(y); ++n) {
-      double value = c[0];
-      double slope = 0.0;
-      for (int k = 1; k <= 5; ++k) {
-        slope = slope * y + value;
-        value = value * y + c[k];
-      }
-      step = value / slope;
-      y -= step;
-    }
-    if (!(std::abs(y) < kFar)) return kUndecided;
-    // What is left without it, from the smallest coefficients up: stable for the largest root.
-    quartic[0] = c[0];
-    for (int k = 1; k <= 4; ++k) quartic[k] = c[k] + y * quartic[k - 1];
-    if (!(std::abs(c[5] + y * quartic[4]) <= kConverged * std::abs(c[5]))) return kUndecided;
+  double y = 0.0;  // 1 / |x| of the nearest of the far roots x
+  if constexpr (N == 4) {
+    std::copy(c, c + 5, quartic);
+  } else if constexpr (N == 5) {
+    if (!SplitFarRoot(c, quartic, &y)) return kUndecided;
     roots[count++] = 1.0 / y;
   } else {
-    std::copy(c, c + 5, quartic);
+    constexpr double kOpen = 1e-6;
+    double b, g;
+    if (!SplitFarPair(c, quartic, &b, &g)) return kUndecided;
+    const double half = 0.5 * b;
+    const double discriminant = half * half - g;
+    if (!(std::abs(discriminant) > kOpen * (half * half + std::abs(g)))) return kUndecided;
+    if (discriminant > 0.0) {
+      y = -half - std::copysign(std::sqrt(discriminant), half);
+      roots[count++] = 1.0 / y;
+      roots[count++] = y / g;
+    } else {
+      y = std::sqrt(g);
+    }
   }
   const int others = QuarticStarts(quartic, roots + count);
   if (others == kUndecided) return kUndecided;

@@ -1,4 +1,4 @@
-// Real roots of polynomials: closed forms to degree 3 and, where they are certain, to degree 5;
+// Real roots of polynomials: closed forms to degree 3 and, where they are certain, to degree 6;
 // else isolation by Descartes' rule and safeguarded Newton steps.
 //
 // Coefficients ascend: p(x) = c[0] + c[1] x + ... + c[N] x^N. Every function returns the number
@@ -165,7 +165,7 @@ inline int RealRoots<3>(const double* c, double* roots) {
   return count;
 }
 
-// Degree 4 and above: degrees 4 and 5 in closed form where that is certain of the number of roots,
+// Degree 4 and above: degrees 4 to 6 in closed form where that is certain of the number of roots,
 // else by isolation.
 template <int N>
 int RealRoots(const double* c, double* roots) {
@@ -206,7 +206,7 @@ int RealRoots(const double* c, double* roots) {
   }
   c = scaled;
 
-  if constexpr (N <= 5) {
+  if constexpr (N <= 6) {
     const int found = count > 0 ? polynomial_internal::kUndecided
                                 : polynomial_internal::RootsInClosedForm<N>(c, roots);
     if (found != polynomial_internal::kUndecided) {

@@ -80,10 +80,10 @@ struct Setting {
   double inter_share;
 };
 
-// The determinants that 4pt (quintics of intra-camera samples, quartics of one camera) and 3pt
-// (quartics of mixed samples) make.
+// The determinants that 4pt (sextics of samples with inter-camera matches, quintics of intra-camera
+// samples, quartics of one camera) and 3pt (quartics of mixed samples) make.
 void CompareDeterminants(const Setting& setting, int num_cameras, PriorKind prior, Tally* tally4,
-                         Tally* tally5) {
+                         Tally* tally5, Tally* tally6) {
   constexpr int kPairs = 20;
   constexpr int kMatches = 48;
   SceneOptions options;
@@ -117,36 +117,38 @@ void CompareDeterminants(const Setting& setting, int num_cameras, PriorKind prio
       const int degree = system.Determinant(c);
       if (degree == 4) Compare<4>(c, tally4);
       if (degree == 5) Compare<5>(c, tally5);
+      if (degree == 6) Compare<6>(c, tally6);
     }
   }
 }
 
 TEST(ClosedFormRoots, LoseNoRootOfTheSolversDeterminants) {
   for (const double rotation_deg : {0.0, 0.05, 1.0, 5.0, 30.0}) {
-    Tally tally4, tally5;
+    Tally tally4, tally5, tally6;
     for (const MotionPattern motion :
          {MotionPattern::kRandom, MotionPattern::kForward, MotionPattern::kSideways}) {
       for (const bool noisy : {false, true}) {
         for (const double inter_share : {0.0, 1.0}) {
           const Setting setting = {rotation_deg, motion, noisy ? 0.5 : 0.0, noisy ? 0.3 : 0.0,
                                    inter_share};
-          CompareDeterminants(setting, 2, PriorKind::kVertical, &tally4, &tally5);
-          CompareDeterminants(setting, 2, PriorKind::kPlanar, &tally4, &tally5);
+          CompareDeterminants(setting, 2, PriorKind::kVertical, &tally4, &tally5, &tally6);
+          CompareDeterminants(setting, 2, PriorKind::kPlanar, &tally4, &tally5, &tally6);
         }
         const Setting setting = {rotation_deg, motion, noisy ? 0.5 : 0.0, noisy ? 0.3 : 0.0, 0.0};
-        CompareDeterminants(setting, 1, PriorKind::kVertical, &tally4, &tally5);
+        CompareDeterminants(setting, 1, PriorKind::kVertical, &tally4, &tally5, &tally6);
       }
     }
-    for (const Tally* tally : {&tally4, &tally5}) {
+    for (const Tally* tally : {&tally4, &tally5, &tally6}) {
       EXPECT_EQ(tally->lost, 0) << rotation_deg << " deg, of " << tally->roots;
       EXPECT_EQ(tally->invented, 0) << rotation_deg << " deg, of " << tally->roots;
       EXPECT_GT(tally->polynomials, 1000);
     }
-    // Else the closed forms are right but useless. Measured: 12 percent of the quintics of 4pt; 44
-    // of the quartics, more of which have double roots.
+    // Else the closed forms are right but useless. Measured: 12 percent of the quintics of 4pt, 36
+    // of the sextics; 44 of the quartics, more of which have double roots.
     if (rotation_deg == 1.0) {
       EXPECT_LT(tally5.undecided, 0.2 * tally5.polynomials);
       EXPECT_LT(tally4.undecided, 0.6 * tally4.polynomials);
+      EXPECT_LT(tally6.undecided, 0.5 * tally6.polynomials);
     }
   }
 }
