@@ -24,7 +24,7 @@ struct SolverInfo {
   int sample_size;
   PriorKind prior;
   int max_solutions;
-  bool exact;  // finds the truth at any rotation angle, noise-free
+  bool exact;  // finds the truth at any rotation angle but 180 degrees, noise-free
   SampleKind sampling;
   SolveFunction solve;
   const char* source;  // one line: publication and equations

@@ -36,14 +36,17 @@ void DepthSystem<kModel>::SetReference(const PreparedMatches& matches, const int
   // first-order bias grows with the depths.
   int best = 0;
   double largest = matches[sample[0]].parallax2;
+  double sum = largest;  // not finite if one match is not
   bool all_intra = matches[sample[0]].camera1 == matches[sample[0]].camera2;
   for (int k = 1; k < sample_size; ++k) {
     const PreparedMatch& m = matches[sample[k]];
     best = m.parallax2 > largest ? k : best;
     largest = std::max(largest, m.parallax2);
+    sum += m.parallax2;
     all_intra &= m.camera1 == m.camera2;
   }
   reference_ = &matches[sample[best]];
+  has_parallax_ = sum > kNoParallax2 && std::isfinite(sum);
   deflated_ = all_intra && matches.alignment().contains_identity;
   int row = 0;
   for (int k = 0; k < sample_size; ++k) {
@@ -99,14 +102,10 @@ template <RotationModel kModel>
 void DepthSystem<kModel>::SetFourPoint(const PreparedMatches& matches, const int* sample) {
   planar_ = false;
   SetReference(matches, sample, 4);
-  // Central: all centres equal the reference's, at both times.
+  // Central: nothing is said of |t|.
   central_ = true;
   for (int k = 0; k < 4 && central_; ++k) {
-    const PreparedMatch& m = matches[sample[k]];
-    for (int c = 0; c < 3; ++c) {
-      central_ = central_ && std::abs(m.s1[c] - reference_->s1[c]) < kNegligible &&
-                 std::abs(m.s2[c] - reference_->s2[c]) < kNegligible;
-    }
+    central_ = SameArm(matches[sample[k]], *reference_);
   }
 }
 
@@ -123,11 +122,7 @@ void DepthSystem<kModel>::SetPlanar(const PreparedMatches& matches, const int* s
   f_[0][2][2] = deflated_ ? 0.0 : height;
   central_ = std::abs(height) < kNegligible;
   for (int k = 0; k < 3 && central_; ++k) {
-    const PreparedMatch& m = matches[sample[k]];
-    for (int c = 0; c < 3; ++c) {
-      central_ = central_ && std::abs(m.s1[c] - reference_->s1[c]) < kNegligible &&
-                 std::abs(m.s2[c] - reference_->s2[c]) < kNegligible;
-    }
+    central_ = SameArm(matches[sample[k]], *reference_);
   }
 }
 
@@ -135,7 +130,7 @@ template <RotationModel kModel>
 int DepthSystem<kModel>::Determinant(double* coefficients) const {
   constexpr int D = kEntryDegree;
   for (int k = 0; k <= kMaxDegree; ++k) coefficients[k] = 0.0;
-  if (!(reference_->parallax2 > kNoParallax2)) return 0;
+  if (!has_parallax_) return 0;
 
   // f(i,0) f(j,1) - f(i,1) f(j,0) of rows i and j.
   const auto minor = [this](int i, int j, double* m) {

@@ -17,8 +17,8 @@
 // It is divided by z, and the unknowns become (d1, d2, w'), w' = z w. One factor of det F goes;
 // a root that remains at 0 is true pure translation, with a direction and no scale.
 //
-// Central samples. If all camera centres of the sample coincide, column 3 vanishes altogether:
-// |t| is not determined, one match is not needed, and the determinant is that of two rows.
+// Central samples. If all camera centres of the sample coincide, or differ along Y only (SameArm),
+// column 3 vanishes altogether: |t| is not determined, one match is not needed, and the determinant is that of two rows.
 #ifndef RIGEL_MINIMAL_DEPTH_SYSTEM_H_
 #define RIGEL_MINIMAL_DEPTH_SYSTEM_H_
 
@@ -59,6 +59,7 @@ class DepthSystem {
   // Entry (row, column) is sum_k f_[k][row][column] z^k; column 2 is divided by z if deflated_.
   double f_[kEntryDegree + 1][3][3];
   const PreparedMatch* reference_ = nullptr;
+  bool has_parallax_ = false;
   bool deflated_ = false;
   bool central_ = false;
   bool planar_ = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "rigel/minimal/laplace.h"
 #include "rigel/minimal/unit_baseline.h"
@@ -13,14 +14,6 @@ using laplace::Pair;
 
 // Below this, relative to the rest, a quantity is rounding.
 constexpr double kNegligible = 1e-12;
-
-bool SameCentres(const PreparedMatch& a, const PreparedMatch& b) {
-  // Most differ in the first coordinate.
-  for (int c = 0; c < 3; ++c) {
-    if (!(std::abs(a.s1[c] - b.s1[c]) + std::abs(a.s2[c] - b.s2[c]) < kNegligible)) return false;
-  }
-  return true;
-}
 
 // The null vector of a 4x4 matrix of rank 3 with the columns x, y, z and k; of a matrix that is
 // almost singular, almost the singular vector of its least singular value, that is adj adj' e for
@@ -65,23 +58,32 @@ Eigen::Vector4d NullVector(const Eigen::Array4d& x, const Eigen::Array4d& y,
 }  // namespace
 
 DirectSample::DirectSample(const PreparedMatches& matches, const int* sample)
-    : matches_(&matches), sample_(sample) {
+    : matches_(&matches) {
+  std::copy(sample, sample + 4, sample_);
   const PreparedMatch& first = matches[sample[0]];
   bool all_intra = true;
   central_ = true;
-  double parallax2 = 0.0;
+  double parallax2 = 0.0;  // a sum, as that of a match that is not finite is not either
   for (int r = 0; r < 4; ++r) {
     const PreparedMatch& m = matches[sample[r]];
-    parallax2 = std::max(parallax2, m.parallax2);
+    parallax2 += m.parallax2;
     all_intra &= m.camera1 == m.camera2;
-    central_ = central_ && (r == 0 || SameCentres(m, first));
+    central_ = central_ && (r == 0 || SameArm(m, first));
   }
-  has_parallax_ = parallax2 > kNoParallax2;
+  has_parallax_ = parallax2 > kNoParallax2 && std::isfinite(parallax2);
   deflated_ = all_intra && !central_ && matches.alignment().contains_identity;
+  if (central_) {
+    // The last one is left out: the one that says least.
+    for (int r = 0; r < 3; ++r) {
+      if (matches[sample_[r]].parallax2 < matches[sample_[3]].parallax2) {
+        std::swap(sample_[r], sample_[3]);
+      }
+    }
+  }
   // Two rows at once, as what is written apart cannot be read back together without waiting.
   for (int r = 0; r < 4; r += 2) {
-    const PreparedMatch& a = matches[sample[r]];
-    const PreparedMatch& b = matches[sample[r + 1]];
+    const PreparedMatch& a = matches[sample_[r]];
+    const PreparedMatch& b = matches[sample_[r + 1]];
     const auto rows = [r](Eigen::Array4d& column) { return column.segment<2>(r); };
     const Pair X0(a.X0, b.X0), Xc(a.Xc, b.Xc), Xs(a.Xs, b.Xs), Z0(a.Z0, b.Z0);
     const Pair K0(a.K0, b.K0), Kc(a.Kc, b.Kc), Ks(a.Ks, b.Ks);

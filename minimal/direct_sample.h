@@ -14,9 +14,11 @@
 // the unknowns become (u, w'), w' = z w. A root that remains at 0 is true pure translation, with a
 // direction and no scale (compare depth_system.h).
 //
-// Central samples. If all camera centres coincide, the baseline b = R s_i + t - s_j satisfies
-// n . b = 0 and |b| is not determined: (t, 1) = (s_j - R s_i, 1) would be a null vector at any
-// angle. The unknowns become (b, w), one match is left out and w = 0 takes its row.
+// A rotation by exactly 180 degrees has no z.
+//
+// Central samples. If all camera centres coincide, or differ along Y only (SameArm), the baseline
+// b = R s_i + t - s_j satisfies n . b = 0 and |b| is not determined: (t, 1) = (s_j - R s_i, 1) would
+// be a null vector at any angle. The unknowns become (b, w), one match is left out and w = 0 takes its row.
 #ifndef RIGEL_MINIMAL_DIRECT_SAMPLE_H_
 #define RIGEL_MINIMAL_DIRECT_SAMPLE_H_
 
@@ -29,14 +31,14 @@ namespace rigel {
 
 class DirectSample {
  public:
-  // `sample` holds four indices into `matches`; both must outlive this object.
+  // `sample` holds four indices into `matches`, which must outlive this object.
   DirectSample(const PreparedMatches& matches, const int* sample);
   DirectSample(const DirectSample&) = delete;
   DirectSample& operator=(const DirectSample&) = delete;
 
   bool deflated() const { return deflated_; }
 
-  // False if no match moves: nothing can be said of translation.
+  // False if no match moves, or one is not finite: nothing can be said of translation.
   bool has_parallax() const { return has_parallax_; }
 
   // Coefficients of the determinant, ascending in z = tan(a/2): degree 6, or 5 if deflated; c[6] is
@@ -53,13 +55,13 @@ class DirectSample {
   // nothing if that does not exist.
   void AddSolution(double z, Solutions* solutions) const;
 
-  // Columns of the matrix, one entry a match: coefficients of 1, z and, for k, z^2. That of y is
-  // -y0. kc of a deflated sample: of k / z, k2 = 0.
+  // Columns of the matrix, one entry a match: coefficients of 1, z and, of k, z^2; y has -y0 there.
+  // k of a deflated sample is divided by z, and k2 = 0.
   Eigen::Array4d x0, x1, y0, y1, z0, z1, k0, k1, k2;
 
  private:
   const PreparedMatches* matches_;
-  const int* sample_;
+  int sample_[4];  // in the order of the rows
   bool has_parallax_;
   bool deflated_;
   bool central_;

@@ -372,6 +372,7 @@ int Solve5ptPlusOne(const PreparedMatches& matches, const int* sample, Solutions
   const RayPair& five = matches.rays(sample[0]);
   const RayPair& sixth = matches.rays(sample[5]);
   const PreparedMatch& last = matches[sample[5]];
+  if (!std::isfinite(last.parallax2)) return 0;
   const bool same_pair = last.camera1 == first.camera1 && last.camera2 == first.camera2;
 
   double basis[4][9];

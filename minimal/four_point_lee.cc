@@ -65,7 +65,9 @@ int Solve4ptLee(const PreparedMatches& matches, const int* sample, Solutions* so
   // The determinant of degree 8 is 1 + z^2 times one of degree 6, as (x, z) turn by a rotation: the
   // quotient has the same real roots. That of a deflated sample is a quintic.
   double sextic[7];
-  for (int n = 0; n < 7; ++n) sextic[n] = c[n] - (n >= 2 ? sextic[n - 2] : 0.0);
+  // From both ends: what rounding leaves of c[n] must not reach smaller coefficients.
+  for (int n = 0; n < 4; ++n) sextic[n] = c[n] - (n >= 2 ? sextic[n - 2] : 0.0);
+  for (int n = 6; n >= 4; --n) sextic[n] = c[n + 2] - (n <= 4 ? sextic[n + 2] : 0.0);
   double roots[6];
   const int num_roots = rows.deflated() ? RealRoots<5>(sextic, roots) : RealRoots<6>(sextic, roots);
   for (int n = 0; n < num_roots; ++n) rows.AddSolution(roots[n], solutions);

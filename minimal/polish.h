@@ -30,7 +30,7 @@ int PolishRoots(const double* c, const double* starts, int num_starts, double* r
     if (!std::isfinite(z[k]) || !(std::abs(step[k]) <= 1e-5 * (1e-6 + std::abs(z[k])))) continue;
     bool duplicate = false;
     for (int n = 0; n < count; ++n) {
-      duplicate = duplicate || std::abs(roots[n] - z[k]) <= 1e-9 * std::abs(z[k]);
+      duplicate = duplicate || std::abs(roots[n] - z[k]) <= 1e-9 * (1e-6 + std::abs(z[k]));
     }
     if (!duplicate) roots[count++] = z[k];
   }

@@ -10,6 +10,7 @@
 #ifndef RIGEL_MINIMAL_PREPARED_MATCHES_H_
 #define RIGEL_MINIMAL_PREPARED_MATCHES_H_
 
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
@@ -39,6 +40,18 @@ struct PreparedMatch : ConstraintRow {
   double parallax2;     // |p x r|^2, squared sine of the angle between the aligned rays
   int camera1, camera2;
 };
+
+// True if the arms s2 - R_y(a) s1 of the two matches are the same at every angle: equal camera
+// centres at both times, but for a height along Y. Matches that all have the same arm say nothing
+// of |t|.
+inline bool SameArm(const PreparedMatch& a, const PreparedMatch& b) {
+  constexpr double kSame = 1e-12;  // metres: below it is rounding
+  // Most differ in the first coordinate.
+  if (!(std::abs(a.s1[0] - b.s1[0]) + std::abs(a.s2[0] - b.s2[0]) < kSame)) return false;
+  return std::abs(a.s1[2] - b.s1[2]) + std::abs(a.s2[2] - b.s2[2]) +
+             std::abs((a.s2[1] - a.s1[1]) - (b.s2[1] - b.s1[1])) <
+         kSame;
+}
 
 class PreparedMatches {
  public:

@@ -33,7 +33,6 @@ class Solutions {
     if (size_ < kMaxSolutions) ++size_;
     return items_[size_ - 1];
   }
-  void RemoveLast() { --size_; }
 
  private:
   int size_ = 0;

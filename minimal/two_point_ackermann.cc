@@ -40,7 +40,7 @@ int Solve2ptAckermann(const PreparedMatches& matches, const int* sample, Solutio
     k_size += std::abs(k[r][0]) + std::abs(k[r][1]) + std::abs(k[r][2]);
   }
 
-  if (!(std::max(m[0]->parallax2, m[1]->parallax2) > kNoParallax2)) return 0;
+  if (!(m[0]->parallax2 + m[1]->parallax2 > kNoParallax2)) return 0;
   double roots[3];
   int num_roots = 0;
   // A camera above the body's origin: k vanishes, and one match would do for the angle.

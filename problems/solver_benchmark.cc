@@ -185,7 +185,7 @@ SolverBenchmarkRow BenchmarkRow(const SolverInfo& solver, const SolverBenchmarkO
 }  // namespace
 
 double ReferenceKernelMicroseconds() {
-  constexpr int kProblems = 1000;
+  constexpr int kProblems = 20000;  // some 25 batches
   std::vector<Eigen::Matrix4d> matrices;
   Random random(7);
   for (int k = 0; k < kProblems; ++k) {

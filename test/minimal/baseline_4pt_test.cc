@@ -7,10 +7,12 @@
 #include <gtest/gtest.h>
 
 #include "rigel/core/epipolar.h"
+#include "rigel/core/random.h"
 #include "rigel/minimal/four_point.h"
 #include "rigel/minimal/four_point_lee.h"
 #include "rigel/minimal/four_point_liu.h"
 #include "rigel/minimal/four_point_sweeney.h"
+#include "rigel/minimal/three_point.h"
 #include "rigel/test/minimal/random_problem.h"
 
 namespace rigel {
@@ -286,13 +288,52 @@ TEST(Baseline4pt, NoMotionGivesFiniteMotionsOrNone) {
   }
 }
 
+// Turning about the known direction leaves the offsets between such cameras as they are: nothing
+// says how far the car moved, as with a single camera.
+TEST(Baseline4pt, CamerasAboveOneAnotherAlongTheAxisSayNothingOfTheLength) {
+  constexpr Case kFour[] = {{"4pt", &Solve4pt, PriorKind::kAxis},
+                            {"3pt", &Solve3pt, PriorKind::kPlanar},
+                            {"4pt-lee", &Solve4ptLee, PriorKind::kAxis},
+                            {"4pt-sweeney", &Solve4ptSweeney, PriorKind::kAxis}};
+  for (const Case& c : kFour) {
+    int found = 0;
+    int with_scale = 0;
+    for (int seed = 0; seed < 200; ++seed) {
+      RandomProblem problem = MakeRandomProblem(seed, {});
+      Random random = Random::Stream(650, seed);
+      const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
+      problem.prior.axis = problem.prior.normal = y;
+      for (int k = 0; k < 2; ++k) problem.rig.cameras[k].s = (0.5 * k - 0.25) * y;
+      problem.truth.R = ExpSO3(random.Uniform(-0.1, 0.1) * y);
+      problem.truth.t = Eigen::Vector3d(random.Normal(), 0.0, random.Normal()).normalized();
+      problem.matches.clear();
+      while (problem.matches.size() < 4) {
+        const int camera = static_cast<int>(problem.matches.size()) % 2;
+        const Eigen::Vector2d pixel(random.Uniform(0.0, 640.0), random.Uniform(0.0, 480.0));
+        Match match;
+        if (MakeMatch(problem.rig, problem.truth, camera, camera, pixel, random.Uniform(5.0, 30.0),
+                      &match)) {
+          problem.matches.push_back(match);
+        }
+      }
+      Solutions solutions;
+      c.solve(problem.Prepare(c.prior), kSample, &solutions);
+      const MotionError best = BestMotion(solutions, problem.truth);
+      found += best.rotation < 1e-8 && best.direction < 1e-6 && best.scale < 1e-6;
+      for (const Solution& solution : solutions) with_scale += solution.has_scale ? 1 : 0;
+    }
+    EXPECT_GE(found, 198) << c.name;
+    EXPECT_EQ(with_scale, 0) << c.name;
+  }
+}
+
 TEST(Baseline4pt, NonFiniteInputGivesNoFiniteMotion) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const Case& c : kAll) {
-    for (const bool inter : {true, false}) {
+    for (const CameraPairs& cameras : {InterPairs(), IntraPairs(), CameraPairs{{0, 0}}}) {
       ProblemOptions options;
-      options.cameras = inter ? InterPairs() : IntraPairs();
+      options.cameras = cameras;
       for (const double value : {kNan, kInfinity}) {
         for (int k = 0; k < 4; ++k) {
           RandomProblem problem = MakeRandomProblem(k, options);
