@@ -23,9 +23,8 @@ struct InverseBinomials {
   }
 };
 
-// Real roots of the polynomial c of degree n, kMax - 2 <= n <= kMax, by Descartes' rule in the
-// Bernstein basis, as in polynomial.h but with a degree known at run time and to the accuracy that
-// an iteration on the original equations needs, not more.
+// c[0..n] ascend, kMax - 2 <= n <= kMax. By Descartes' rule in the Bernstein basis, as in
+// root_isolation.h.
 template <int kMax>
 class RootFinder {
  public:

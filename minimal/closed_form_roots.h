@@ -1,5 +1,5 @@
-// Roots of cubics, quartics, quintics with one root far off and sextics with two, in closed form:
-// several times as fast as isolation. Each function says where rounding leaves the number of real
+// Roots of quartics, quintics with one root far off and sextics with two, in closed form: several
+// times as fast as isolation. Each function says where rounding leaves the number of real
 // roots open, and polynomial.h then isolates them: no root is lost.
 //
 // Coefficients ascend, as in polynomial.h. No heap.

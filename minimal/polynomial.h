@@ -113,6 +113,38 @@ inline int RealRoots<2>(const double* c, double* roots) {
 inline int CubicStarts(const double* c, double* roots) {
   if (!polynomial_internal::AllFinite<3>(c)) return 0;
   if (polynomial_internal::LeadingIsZero<3>(c)) return RealRoots<2>(c, roots);
+  // One root that is far from the other two would drown them, or drown in them, below. It is divided
+  // out first, from the end where that is stable; each step divides the error by kFar.
+  constexpr double kFar = 1e-4;
+  constexpr int kSteps = 4;
+  const double c1_2 = c[1] * c[1];
+  const double c2_2 = c[2] * c[2];
+  if (std::abs(c[3] * c[1]) < kFar * c2_2 &&
+      c[3] * c[3] * std::abs(c[0]) < kFar * kFar * c2_2 * std::abs(c[2])) {
+    double q[3] = {c[0], c[1], c[2]};
+    double y = 0.0;  // 1 / x
+    for (int n = 0; n < kSteps; ++n) {
+      y = -c[3] / q[2];
+      q[1] = c[1] + y * c[0];
+      q[2] = c[2] + y * q[1];
+    }
+    const int count = RealRoots<2>(q, roots);
+    roots[count] = 1.0 / y;
+    return count + 1;
+  }
+  if (std::abs(c[0] * c[2]) < kFar * c1_2 &&
+      c[0] * c[0] * std::abs(c[3]) < kFar * kFar * c1_2 * std::abs(c[1])) {
+    double q[3] = {c[1], c[2], c[3]};
+    double x = 0.0;
+    for (int n = 0; n < kSteps; ++n) {
+      x = -c[0] / q[0];
+      q[1] = c[2] + x * c[3];
+      q[0] = c[1] + x * q[1];
+    }
+    const int count = RealRoots<2>(q, roots);
+    roots[count] = x;
+    return count + 1;
+  }
   // Depressed form (Press et al., Numerical Recipes, section 5.6).
   const double inv = 1.0 / c[3];
   const double a = c[2] * inv;

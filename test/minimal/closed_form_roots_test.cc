@@ -60,7 +60,7 @@ void Compare(const double* c, Tally* tally) {
   }
   tally->roots += num_isolated;
   const int num_real = RealRoots<N>(c, real);
-  for (double& x : real) x /= scale;
+  for (int k = 0; k < num_real; ++k) real[k] /= scale;
   for (int k = 0; k < num_isolated; ++k) {
     const double tolerance = 1e-7 * std::abs(isolated[k]);
     tally->lost += Nearest(closed, num_closed, isolated[k]) <= tolerance ? 0 : 1;

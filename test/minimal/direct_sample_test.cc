@@ -144,7 +144,7 @@ TEST(DirectSample, ApproximateRootsGiveTheTranslationOfLeastResidual) {
   }
 }
 
-TEST(DirectSample, ItsRootIsTenTimesLessBiasedThanTheDepthForms) {
+TEST(DirectSample, FirstOrderRootsAreLessBiasedThanThoseOfTheDepthForm) {
   std::vector<double> direct_errors, depth_errors;
   for (int seed = 0; seed < 300; ++seed) {
     SceneOptions options;
