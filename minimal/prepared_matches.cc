@@ -1,7 +1,11 @@
 #include "rigel/minimal/prepared_matches.h"
 
+#include <numeric>
+
 namespace rigel {
 namespace {
+
+constexpr int kNotPrepared = -1;
 
 PreparedMatch PrepareOne(const RayPair& rays, const Alignment& alignment, const Match& match) {
   const Eigen::Vector3d p = alignment.A1 * rays.ray1.x;
@@ -40,20 +44,19 @@ PreparedMatches::PreparedMatches(const Rig& rig, const std::vector<Match>& match
 }
 
 PreparedMatches::PreparedMatches(const GroupedMatches& matches, const Alignment& alignment)
-    : alignment_(alignment),
-      matches_(matches.size()),
-      rays_(matches.size()),
-      grouped_(&matches),
-      ready_(matches.size(), 0) {}
+    : alignment_(alignment), place_(matches.size(), kNotPrepared), grouped_(&matches) {
+  matches_.reserve(matches.size());
+  rays_.reserve(matches.size());
+}
 
 void PreparedMatches::Prepare(const int* sample, int size) {
   if (grouped_ == nullptr) return;
   for (int i = 0; i < size; ++i) {
     const int k = sample[i];
-    if (ready_[k]) continue;
-    ready_[k] = 1;
-    rays_[k] = grouped_->rays(k);
-    matches_[k] = PrepareOne(rays_[k], alignment_, grouped_->matches()[k]);
+    if (place_[k] != kNotPrepared) continue;
+    place_[k] = static_cast<int>(matches_.size());
+    rays_.push_back(grouped_->rays(k));
+    matches_.push_back(PrepareOne(rays_.back(), alignment_, grouped_->matches()[k]));
   }
 }
 
@@ -65,6 +68,8 @@ void PreparedMatches::Set(const Rig& rig, const std::vector<Match>& matches,
   rays_.clear();
   matches_.reserve(matches.size());
   rays_.reserve(matches.size());
+  place_.resize(matches.size());
+  std::iota(place_.begin(), place_.end(), 0);
   for (const Match& match : matches) {
     rays_.push_back(MakeRayPair(rig, match));
     matches_.push_back(PrepareOne(rays_.back(), alignment, match));

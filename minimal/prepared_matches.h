@@ -59,7 +59,7 @@ class PreparedMatches {
   PreparedMatches(const Rig& rig, const std::vector<Match>& matches, const Alignment& alignment);
 
   // In grouped order, for RANSAC, which may draw few of them: a match is ready once Prepare() was
-  // told of it. `matches` must outlive this object.
+  // told of it, and what is never drawn takes no memory. `matches` must outlive this object.
   PreparedMatches(const GroupedMatches& matches, const Alignment& alignment);
 
   // To be called before a sample of such matches is solved; those of the other constructor are
@@ -69,19 +69,20 @@ class PreparedMatches {
   // Keeps the memory of the last frame pair.
   void Set(const Rig& rig, const std::vector<Match>& matches, const Alignment& alignment);
 
-  int size() const { return static_cast<int>(matches_.size()); }
-  const PreparedMatch& operator[](int k) const { return matches_[k]; }
+  int size() const { return static_cast<int>(place_.size()); }
+  const PreparedMatch& operator[](int k) const { return matches_[place_[k]]; }
   const Alignment& alignment() const { return alignment_; }
 
   // The rays in the body frames (not aligned).
-  const RayPair& rays(int k) const { return rays_[k]; }
+  const RayPair& rays(int k) const { return rays_[place_[k]]; }
 
  private:
   Alignment alignment_;
+  // In the order of their preparation; match k at place_[k], which is negative until then.
   std::vector<PreparedMatch> matches_;
   std::vector<RayPair> rays_;
+  std::vector<int> place_;
   const GroupedMatches* grouped_ = nullptr;  // whose matches are prepared when drawn
-  std::vector<char> ready_;                  // of these
 };
 
 }  // namespace rigel

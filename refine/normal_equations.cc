@@ -43,15 +43,15 @@ RowMajor3d Differentiate(const GroupedMatches& matches, const MatchGroup& group,
 
 void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatches& matches,
                         const MatchGroup& group, const PixelArrays& pixels, const double* weights,
-                        const Pose& pose, MotionNormalEquations* sum) {
+                        const Pose& pose, bool derivatives, MotionNormalEquations* sum) {
   FundamentalDerivatives D;
   const RowMajor3d F = Differentiate(matches, group, pose, &D);
   constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
   SampsonSums sums;
-  SumSampson(options, pixels, weights, F.data(), kRounding * kRounding * F.squaredNorm(), true,
-             &sums);
+  SumSampson(options, pixels, weights, F.data(), kRounding * kRounding * F.squaredNorm(),
+             derivatives, &sums);
   sum->cost += sums.cost;
-  AddProjected(sums, D, sum->gradient.data(), sum->curvature.data());
+  if (derivatives) AddProjected(sums, D, sum->gradient.data(), sum->curvature.data());
 }
 
 }  // namespace rigel

@@ -18,10 +18,10 @@ struct MotionNormalEquations {
 };
 
 // Adds what SumSampson() gives at `pose` for `pixels` and their weights: matches of the group, or
-// some of them.
+// some of them. Without `derivatives` only to the cost, by the same bits.
 void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatches& matches,
                         const MatchGroup& group, const PixelArrays& pixels, const double* weights,
-                        const Pose& pose, MotionNormalEquations* sum);
+                        const Pose& pose, bool derivatives, MotionNormalEquations* sum);
 
 }  // namespace rigel
 

@@ -32,7 +32,8 @@ class ParameterEquations {
     kernel_.curvature = Curvature::kNewton;
   }
 
-  void Evaluate(const ParameterVector& parameters) {
+  // Without `derivatives` only the cost is set.
+  void Evaluate(const ParameterVector& parameters, bool derivatives) {
     const int n = static_cast<int>(parameters.size());
     Pose pose;
     MotionBasis basis;
@@ -41,24 +42,28 @@ class ParameterEquations {
     for (size_t g = 0; g < packed_.groups.size(); ++g) {
       const PixelArrays& pixels = packed_.groups[g];
       const double* weights = packed_.weights.data() + (pixels.x1 - packed_.x1.data());
-      AddNormalEquations(kernel_, matches_, matches_.groups()[g], pixels, weights, pose, &sum);
+      AddNormalEquations(kernel_, matches_, matches_.groups()[g], pixels, weights, pose,
+                         derivatives, &sum);
     }
     cost = sum.cost;
-    // Filled up with zeros, so that the sizes are known to the compiler.
-    Matrix6d B = Matrix6d::Zero();
-    B.leftCols(n) = basis;
-    gradient = (B.transpose() * sum.gradient).head(n);
-    const Matrix6d by_parameters = B.transpose() * (sum.curvature * B);
-    curvature = by_parameters.topLeftCorner(n, n);
+    if (derivatives) {
+      // Filled up with zeros, so that the sizes are known to the compiler.
+      Matrix6d B = Matrix6d::Zero();
+      B.leftCols(n) = basis;
+      gradient = (B.transpose() * sum.gradient).head(n);
+      const Matrix6d by_parameters = B.transpose() * (sum.curvature * B);
+      curvature = by_parameters.topLeftCorner(n, n);
+    }
     if (prior_.size() == 0) return;
     PriorResiduals::Residuals r;
     PriorResiduals::Jacobian by_motion;
     prior_.Evaluate(pose, &r, &by_motion);
+    r *= prior_unit_;
+    cost += 0.5 * r.squaredNorm();
+    if (!derivatives) return;
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxPriorResiduals,
                         6>
         J = prior_unit_ * by_motion.lazyProduct(basis);
-    r *= prior_unit_;
-    cost += 0.5 * r.squaredNorm();
     gradient.noalias() += J.transpose().lazyProduct(r);
     curvature.noalias() += J.transpose().lazyProduct(J);
   }
@@ -130,7 +135,7 @@ LeastSquaresSummary SmallEngine::Solve(const SmallEngineOptions& options,
   packed_.Set(matches_, weights);
   ParameterEquations at(options, matches_, parameterization, packed_, prior, prior_unit);
   ParameterEquations next = at;
-  at.Evaluate(best);
+  at.Evaluate(best, /*derivatives=*/true);
   if (!at.AllFinite()) return summary;
   summary.usable = true;
   summary.initial_cost = at.cost;
@@ -150,7 +155,9 @@ LeastSquaresSummary SmallEngine::Solve(const SmallEngineOptions& options,
       break;
     }
     const ParameterVector candidate = best + step;
-    if (candidate.allFinite()) next.Evaluate(candidate);
+    // No step follows the last one.
+    const bool last = summary.num_iterations == options.max_num_iterations;
+    if (candidate.allFinite()) next.Evaluate(candidate, /*derivatives=*/!last);
     if (candidate.allFinite() && next.AllFinite() && next.cost < at.cost) {
       const double quality = (at.cost - next.cost) / predicted;
       const double shrink = 2.0 * quality - 1.0;

@@ -28,7 +28,7 @@ Matrix6d GroupInformation(const GroupedMatches& matches, const MatchGroup& group
                           const double* weights) {
   MotionNormalEquations sum;
   AddNormalEquations(SampsonKernelOptions(), matches, group, matches.Pixels(group), weights, pose,
-                     &sum);
+                     /*derivatives=*/true, &sum);
   return sum.curvature;
 }
 

@@ -101,7 +101,8 @@ Expected SumByMotion(const Problem& problem, const SampsonKernelOptions& options
   MotionNormalEquations sum;
   for (const MatchGroup& group : problem.matches.groups()) {
     AddNormalEquations(options, problem.matches, group, problem.matches.Pixels(group),
-                       problem.weights.data() + group.begin, problem.pose, &sum);
+                       problem.weights.data() + group.begin, problem.pose, /*derivatives=*/true,
+                       &sum);
   }
   return {sum.cost, sum.gradient, sum.curvature};
 }
@@ -130,6 +131,26 @@ TEST(SampsonKernel, SumsTheResidualsAndJacobiansOfTheMatches) {
         }
       }
     }
+  }
+}
+
+TEST(SampsonKernel, TheCostAloneHasTheSameBits) {
+  for (const LossKind loss : kLosses) {
+    const Problem problem = MakeProblem(7, 200);
+    const MatchGroup& group = problem.matches.groups()[0];
+    SampsonKernelOptions options;
+    options.loss = loss;
+    options.curvature = Curvature::kNewton;
+    MotionNormalEquations all, cost;
+    for (const bool derivatives : {true, false}) {
+      AddNormalEquations(options, problem.matches, group, problem.matches.Pixels(group),
+                         problem.weights.data() + group.begin, problem.pose, derivatives,
+                         derivatives ? &all : &cost);
+    }
+    EXPECT_GT(cost.cost, 0.0);
+    EXPECT_EQ(cost.cost, all.cost);
+    EXPECT_EQ(cost.gradient.norm(), 0.0);
+    EXPECT_GT(all.gradient.norm(), 0.0);
   }
 }
 
