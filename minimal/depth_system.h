@@ -18,7 +18,8 @@
 // a root that remains at 0 is true pure translation, with a direction and no scale.
 //
 // Central samples. If all camera centres of the sample coincide, or differ along Y only (SameArm),
-// column 3 vanishes altogether: |t| is not determined, one match is not needed, and the determinant is that of two rows.
+// column 3 vanishes altogether: |t| is not determined, one match is not needed, and the determinant
+// is that of two rows.
 #ifndef RIGEL_MINIMAL_DEPTH_SYSTEM_H_
 #define RIGEL_MINIMAL_DEPTH_SYSTEM_H_
 

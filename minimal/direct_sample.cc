@@ -57,8 +57,7 @@ Eigen::Vector4d NullVector(const Eigen::Array4d& x, const Eigen::Array4d& y,
 
 }  // namespace
 
-DirectSample::DirectSample(const PreparedMatches& matches, const int* sample)
-    : matches_(&matches) {
+DirectSample::DirectSample(const PreparedMatches& matches, const int* sample) : matches_(&matches) {
   std::copy(sample, sample + 4, sample_);
   const PreparedMatch& first = matches[sample[0]];
   bool all_intra = true;

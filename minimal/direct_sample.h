@@ -17,8 +17,9 @@
 // A rotation by exactly 180 degrees has no z.
 //
 // Central samples. If all camera centres coincide, or differ along Y only (SameArm), the baseline
-// b = R s_i + t - s_j satisfies n . b = 0 and |b| is not determined: (t, 1) = (s_j - R s_i, 1) would
-// be a null vector at any angle. The unknowns become (b, w), one match is left out and w = 0 takes its row.
+// b = R s_i + t - s_j satisfies n . b = 0 and |b| is not determined: (t, 1) = (s_j - R s_i, 1)
+// would be a null vector at any angle. The unknowns become (b, w), one match is left out and w = 0
+// takes its row.
 #ifndef RIGEL_MINIMAL_DIRECT_SAMPLE_H_
 #define RIGEL_MINIMAL_DIRECT_SAMPLE_H_
 

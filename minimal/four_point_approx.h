@@ -17,11 +17,11 @@ namespace rigel {
 // returns their number, 0 to 3; zero is normal. Degenerate samples: depth_system.h.
 int Solve4ptApprox(const PreparedMatches& matches, const int* sample, Solutions* solutions);
 
-// The same made exact near zero rotation: Newton steps on the exact determinant of the constraints on
-// t itself (direct_sample.h), which has the roots of det F. Started at the roots of its first-order
-// form for intra-camera samples whose family contains R = I, of its cubic Taylor polynomial for
-// others (matches between cameras, tilted body frames, a single camera); what does not converge is
-// dropped.
+// The same made exact near zero rotation: Newton steps on the exact determinant of the constraints
+// on t itself (direct_sample.h), which has the roots of det F. Started at the roots of its
+// first-order form for intra-camera samples whose family contains R = I, of its cubic Taylor
+// polynomial for others (matches between cameras, tilted body frames, a single camera); what does
+// not converge is dropped.
 int Solve4ptApproxPolished(const PreparedMatches& matches, const int* sample, Solutions* solutions);
 
 }  // namespace rigel

@@ -113,8 +113,8 @@ inline int RealRoots<2>(const double* c, double* roots) {
 inline int CubicStarts(const double* c, double* roots) {
   if (!polynomial_internal::AllFinite<3>(c)) return 0;
   if (polynomial_internal::LeadingIsZero<3>(c)) return RealRoots<2>(c, roots);
-  // One root that is far from the other two would drown them, or drown in them, below. It is divided
-  // out first, from the end where that is stable; each step divides the error by kFar.
+  // One root that is far from the other two would drown them, or drown in them, below. It is
+  // divided out first, from the end where that is stable; each step divides the error by kFar.
   constexpr double kFar = 1e-4;
   constexpr int kSteps = 4;
   const double c1_2 = c[1] * c[1];

@@ -235,8 +235,8 @@ int Run() {
   if (FLAGS_json != "-") {
     std::cout << SolverBenchmarkTable(rows)
               << "\nreference kernel (4x4 LU solve by Eigen): " << FormatNumber(reference, 4)
-              << " us, for each ratio anew;\npreparing a match: " << FormatNumber(rows[0].prepare_us, 3)
-              << " us\n";
+              << " us, for each ratio anew;\npreparing a match: "
+              << FormatNumber(rows[0].prepare_us, 3) << " us\n";
     const std::string paper = PaperTable1(rows);
     if (!paper.empty()) std::cout << "\n" << paper;
     ok = FlushStdout() && ok;
