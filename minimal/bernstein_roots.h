@@ -6,22 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace rigel::polynomial_system {
+#include "rigel/minimal/root_isolation.h"
 
-// 1 / binomial(n, j) for n = kMax - 2 to kMax.
-template <int kMax>
-struct InverseBinomials {
-  double rows[3][kMax + 1] = {};
-  constexpr InverseBinomials() {
-    for (int n = kMax - 2; n <= kMax; ++n) {
-      double binomial = 1.0;
-      for (int j = 0; j <= n; ++j) {
-        rows[kMax - n][j] = 1.0 / binomial;
-        binomial = binomial * (n - j) / (j + 1);
-      }
-    }
-  }
-};
+namespace rigel::polynomial_system {
 
 // c[0..n] ascend, kMax - 2 <= n <= kMax. By Descartes' rule in the Bernstein basis, as in
 // root_isolation.h.
@@ -48,12 +35,7 @@ class RootFinder {
  private:
   static constexpr int kLanes = 4;
 
-  // An interval with one root: of c it is x, 1 / x if `reversed`, and -x or -1 / x if `mirrored`.
-  struct Bracket {
-    double low, high, guess;
-    bool low_negative;
-    bool reversed, mirrored;
-  };
+  using Bracket = polynomial_internal::Bracket;
 
   double Coefficient(const Bracket& kind, int k) const {
     const double value = kind.reversed ? c_[n_ - k] : c_[k];
@@ -67,8 +49,13 @@ class RootFinder {
     };
     constexpr int kMaxLevel = 24;
     Piece stack[kMaxLevel + 2];
+    using polynomial_internal::InverseBinomials;
     static constexpr InverseBinomials<kMax> kInverse;
-    const double* inverse = kInverse.rows[kMax - n_];
+    static constexpr InverseBinomials<kMax - 1> kInverse1;
+    static constexpr InverseBinomials<kMax - 2> kInverse2;
+    const double* inverse = n_ == kMax       ? kInverse.value
+                            : n_ == kMax - 1 ? kInverse1.value
+                                             : kInverse2.value;
     for (int j = 0; j <= n_; ++j) stack[0].b[j] = c[j] * inverse[j];
     for (int j = 1; j <= n_; ++j) {
       double* b = stack[0].b;

@@ -114,8 +114,7 @@ void DirectSample::Determinant(double c[7]) const {
   Pair sum[7];
   for (Pair& s : sum) s.setZero();
   laplace::ForEachTerm([&](auto rows) {
-    const Pair xz[3] = {rows.MinorIJ(x0, z0), rows.MinorIJ(x0, z1) + rows.MinorIJ(x1, z0),
-                        rows.MinorIJ(x1, z1)};
+    const auto xz = rows.MinorsIJ(x0, x1, z0, z1);
     const Pair y0k0 = rows.MinorPQ(y0, k0);
     const Pair y0k1 = rows.MinorPQ(y0, k1);
     const Pair y0k2 = rows.MinorPQ(y0, k2);
@@ -133,8 +132,7 @@ void DirectSample::Determinant(double c[6], double first_order[4]) const {
   for (Pair& f : first) f.setZero();
   for (Pair& r : rest) r.setZero();
   laplace::ForEachTerm([&](auto rows) {
-    const Pair xz[3] = {rows.MinorIJ(x0, z0), rows.MinorIJ(x0, z1) + rows.MinorIJ(x1, z0),
-                        rows.MinorIJ(x1, z1)};
+    const auto xz = rows.MinorsIJ(x0, x1, z0, z1);
     const Pair y0k0 = rows.MinorPQ(y0, k0);
     const Pair y0k1 = rows.MinorPQ(y0, k1);
     const Pair y1k0 = rows.MinorPQ(y1, k0);

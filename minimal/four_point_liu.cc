@@ -19,9 +19,7 @@ void FirstOrderDeterminant(const DirectSample& rows, const Column& x1, const Col
   Pair sum[5];
   for (Pair& s : sum) s.setZero();
   laplace::ForEachTerm([&](auto term) {
-    const Pair xz[3] = {term.MinorIJ(rows.x0, rows.z0),
-                        term.MinorIJ(rows.x0, z1) + term.MinorIJ(x1, rows.z0),
-                        term.MinorIJ(x1, z1)};
+    const auto xz = term.MinorsIJ(rows.x0, x1, rows.z0, z1);
     const Pair yk0 = term.MinorPQ(rows.y0, rows.k0);
     Pair yk1 = term.MinorPQ(rows.y1, rows.k0);
     // k of a deflated sample is divided by h: a constant.

@@ -7,6 +7,8 @@
 #ifndef RIGEL_MINIMAL_LAPLACE_H_
 #define RIGEL_MINIMAL_LAPLACE_H_
 
+#include <array>
+
 #include <Eigen/Core>
 
 namespace rigel::laplace {
@@ -30,6 +32,11 @@ struct Rows {
 
   // Minors of (a, b) in rows i, j and of (c, d) in rows p, q.
   static Pair MinorIJ(const Column& a, const Column& b) { return I(a) * J(b) - I(b) * J(a); }
+  // Coefficients of 1, z and z^2 of the minors in rows i, j of (a0 + z a1, b0 + z b1).
+  static std::array<Pair, 3> MinorsIJ(const Column& a0, const Column& a1, const Column& b0,
+                                      const Column& b1) {
+    return {MinorIJ(a0, b0), MinorIJ(a0, b1) + MinorIJ(a1, b0), MinorIJ(a1, b1)};
+  }
   static Pair MinorPQ(const Column& c, const Column& d) { return P(c) * Q(d) - P(d) * Q(c); }
 };
 

@@ -43,10 +43,15 @@ PreparedMatches::PreparedMatches(const Rig& rig, const std::vector<Match>& match
   Set(rig, matches, alignment);
 }
 
-PreparedMatches::PreparedMatches(const GroupedMatches& matches, const Alignment& alignment)
-    : alignment_(alignment), place_(matches.size(), kNotPrepared), grouped_(&matches) {
-  matches_.reserve(matches.size());
-  rays_.reserve(matches.size());
+PreparedMatches PreparedMatches::OnDemand(const GroupedMatches& matches,
+                                          const Alignment& alignment) {
+  PreparedMatches result;
+  result.alignment_ = alignment;
+  result.grouped_ = &matches;
+  result.place_.assign(matches.size(), kNotPrepared);
+  result.matches_.reserve(matches.size());
+  result.rays_.reserve(matches.size());
+  return result;
 }
 
 void PreparedMatches::Prepare(const int* sample, int size) {

@@ -58,12 +58,12 @@ class PreparedMatches {
   PreparedMatches() = default;
   PreparedMatches(const Rig& rig, const std::vector<Match>& matches, const Alignment& alignment);
 
-  // In grouped order, for RANSAC, which may draw few of them: a match is ready once Prepare() was
-  // told of it, and what is never drawn takes no memory. `matches` must outlive this object.
-  PreparedMatches(const GroupedMatches& matches, const Alignment& alignment);
+  // In grouped order, for RANSAC, which may draw few of them: match k may be looked at once
+  // Prepare() was told of it, and what is never drawn takes no memory. `matches` must outlive the
+  // result.
+  static PreparedMatches OnDemand(const GroupedMatches& matches, const Alignment& alignment);
 
-  // To be called before a sample of such matches is solved; those of the other constructor are
-  // ready. No heap.
+  // To be called before a sample of OnDemand() is solved; others are ready. No heap.
   void Prepare(const int* sample, int size);
 
   // Keeps the memory of the last frame pair.

@@ -27,7 +27,7 @@ class FramePairSolver {
         matches_(matches),
         subset_(matches.EvenSubset(kSubset)),
         sign_subset_(matches.EvenSubset(kSignSubset)),
-        prepared_(matches, alignment),
+        prepared_(PreparedMatches::OnDemand(matches, alignment)),
         sampler_(matches, solver.sampling, solver.sample_size, options.max_iterations,
                  options.prosac),
         options_(options),

@@ -121,7 +121,7 @@ TEST(PreparedMatches, SetForgetsTheLastFramePair) {
 TEST(PreparedMatches, OfAGroupAreThoseOfTheListOncePrepared) {
   const Problem p = MakeProblem(1);
   const GroupedMatches grouped(p.rig, p.matches);
-  PreparedMatches prepared(grouped, p.alignment);
+  PreparedMatches prepared = PreparedMatches::OnDemand(grouped, p.alignment);
   ASSERT_EQ(prepared.size(), grouped.size());
   const int sample[] = {3, 0, 3};
   prepared.Prepare(sample, 3);
