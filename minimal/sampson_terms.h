@@ -1,26 +1,12 @@
-// What the kernels have in common: a match's epipolar constraint and its gradient by the pixels,
-// and vectors for their sums.
+// What the kernels have in common: a match's epipolar constraint and its gradient by the pixels.
 //
 // For kernel files alone (cpu_path.h): static and always inlined, so that no copy of it is shared.
 #ifndef RIGEL_MINIMAL_SAMPSON_TERMS_H_
 #define RIGEL_MINIMAL_SAMPSON_TERMS_H_
 
-#include "rigel/core/cpu_path.h"
+#include "rigel/core/kernel_lanes.h"
 
 namespace rigel {
-
-// kLanes numbers side by side, in one register or two. Explicit vectors, as g++ keeps several sums
-// of one plain loop in registers only where they are of this type.
-constexpr int kLanes = 4;
-typedef double Lanes __attribute__((vector_size(kLanes * sizeof(double))));
-typedef double StoredLanes
-    __attribute__((vector_size(kLanes * sizeof(double)), aligned(sizeof(double)), may_alias));
-
-static RIGEL_KERNEL_BODY const StoredLanes& LanesAt(const double* values) {
-  return *reinterpret_cast<const StoredLanes*>(values);
-}
-
-static RIGEL_KERNEL_BODY double SumOf(const Lanes& a) { return (a[0] + a[2]) + (a[1] + a[3]); }
 
 struct SampsonTerms {
   double a0, a1;     // first two entries of F p1

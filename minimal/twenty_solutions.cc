@@ -2,15 +2,13 @@
 
 #include <cmath>
 
+#include "rigel/core/kernel_lanes.h"
 #include "rigel/minimal/bernstein_roots.h"
 
 namespace rigel::polynomial_system {
 namespace {
 
 constexpr int kSize = 20;
-// Roots at once: the rows of one are a chain of operations, and the others fill the time.
-constexpr int kLanes = 4;
-using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 
 // Loops over parts of rows begin at multiples of four, where that takes in zeros or unused
 // numbers only, so that they vectorize without remainders.
@@ -102,7 +100,8 @@ RIGEL_KERNEL_BODY void CharacteristicPolynomial(const double (*a)[kSize], double
   for (int i = 0; i <= kSize; ++i) c[i] = p[kSize][i];
 }
 
-// The solutions of the `count` <= kLanes eigenvalues near x.
+// The solutions of the `count` <= kLanes eigenvalues near x: at once, as the rows of one are a
+// chain of operations, and the others fill the time.
 //
 // B = H - x I is made lower triangular from its last row up, each time with the better pivot of the
 // two rows that reach a column: Hyman's recurrence, always with the 1 of the superdiagonal, loses
