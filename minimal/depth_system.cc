@@ -36,7 +36,7 @@ void DepthSystem<kModel>::SetReference(const PreparedMatches& matches, const int
   // first-order bias grows with the depths.
   int best = 0;
   double largest = matches[sample[0]].parallax2;
-  double sum = largest;  // not finite if one match is not
+  double sum = largest;  // NaN if one of the matches is
   bool all_intra = matches[sample[0]].camera1 == matches[sample[0]].camera2;
   for (int k = 1; k < sample_size; ++k) {
     const PreparedMatch& m = matches[sample[k]];
@@ -46,7 +46,7 @@ void DepthSystem<kModel>::SetReference(const PreparedMatches& matches, const int
     all_intra &= m.camera1 == m.camera2;
   }
   reference_ = &matches[sample[best]];
-  has_parallax_ = sum > kNoParallax2 && std::isfinite(sum);
+  has_parallax_ = sum > kNoParallax2;
   deflated_ = all_intra && matches.alignment().contains_identity;
   int row = 0;
   for (int k = 0; k < sample_size; ++k) {

@@ -62,14 +62,14 @@ DirectSample::DirectSample(const PreparedMatches& matches, const int* sample) : 
   const PreparedMatch& first = matches[sample[0]];
   bool all_intra = true;
   central_ = true;
-  double parallax2 = 0.0;  // a sum, as that of a match that is not finite is not either
+  double parallax2 = 0.0;  // a sum: NaN if one of the matches is
   for (int r = 0; r < 4; ++r) {
     const PreparedMatch& m = matches[sample[r]];
     parallax2 += m.parallax2;
     all_intra &= m.camera1 == m.camera2;
     central_ = central_ && (r == 0 || SameArm(m, first));
   }
-  has_parallax_ = parallax2 > kNoParallax2 && std::isfinite(parallax2);
+  has_parallax_ = parallax2 > kNoParallax2;
   deflated_ = all_intra && !central_ && matches.alignment().contains_identity;
   if (central_) {
     // The last one is left out: the one that says least.

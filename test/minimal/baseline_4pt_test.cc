@@ -7,8 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "rigel/core/epipolar.h"
+#include "rigel/core/metrics.h"
 #include "rigel/core/random.h"
 #include "rigel/minimal/four_point.h"
+#include "rigel/minimal/four_point_approx.h"
 #include "rigel/minimal/four_point_lee.h"
 #include "rigel/minimal/four_point_liu.h"
 #include "rigel/minimal/four_point_sweeney.h"
@@ -33,6 +35,13 @@ constexpr Case kExact[] = {{"4pt-lee", &Solve4ptLee, PriorKind::kVertical},
 constexpr Case kAll[] = {{"4pt-lee", &Solve4ptLee, PriorKind::kVertical},
                          {"4pt-sweeney", &Solve4ptSweeney, PriorKind::kAxis},
                          {"4pt-liu", &Solve4ptLiu, PriorKind::kVertical}};
+
+// On the depths of a reference match and on t itself.
+constexpr Case kBothSystems[] = {{"4pt", &Solve4pt, PriorKind::kAxis},
+                                 {"3pt", &Solve3pt, PriorKind::kPlanar},
+                                 {"4pt-lee", &Solve4ptLee, PriorKind::kAxis},
+                                 {"4pt-sweeney", &Solve4ptSweeney, PriorKind::kAxis},
+                                 {"4pt-liu", &Solve4ptLiu, PriorKind::kAxis}};
 
 double Median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -288,14 +297,34 @@ TEST(Baseline4pt, NoMotionGivesFiniteMotionsOrNone) {
   }
 }
 
+// Three of four matches of one camera determine a motion: those of largest parallax, in whatever
+// order they are given.
+TEST(Baseline4pt, TheOrderOfTheMatchesOfOneCameraDoesNotMatter) {
+  ProblemOptions options;
+  options.cameras = {{0, 0}};
+  options.max_rotation_deg = 5.0;
+  for (int seed = 0; seed < 50; ++seed) {
+    RandomProblem problem = MakeRandomProblem(seed, options);
+    // Noise, so that the four do not agree.
+    Random random = Random::Stream(651, seed);
+    for (Match& match : problem.matches) match.pixel2.x() += random.Normal();
+    for (const Case& c : kAll) {
+      const PreparedMatches matches = problem.Prepare(c.prior);
+      Solutions solutions, turned;
+      constexpr int kTurned[] = {3, 0, 2, 1};
+      ASSERT_EQ(c.solve(matches, kSample, &solutions), c.solve(matches, kTurned, &turned));
+      for (const Solution& solution : solutions) {
+        EXPECT_LT(BestRotationError(turned, solution), 1e-9) << c.name;
+      }
+    }
+  }
+}
+
 // Turning about the known direction leaves the offsets between such cameras as they are: nothing
 // says how far the car moved, as with a single camera.
 TEST(Baseline4pt, CamerasAboveOneAnotherAlongTheAxisSayNothingOfTheLength) {
-  constexpr Case kFour[] = {{"4pt", &Solve4pt, PriorKind::kAxis},
-                            {"3pt", &Solve3pt, PriorKind::kPlanar},
-                            {"4pt-lee", &Solve4ptLee, PriorKind::kAxis},
-                            {"4pt-sweeney", &Solve4ptSweeney, PriorKind::kAxis}};
-  for (const Case& c : kFour) {
+  for (const Case& c : kBothSystems) {
+    if (c.solve == &Solve4ptLiu) continue;  // first order
     int found = 0;
     int with_scale = 0;
     for (int seed = 0; seed < 200; ++seed) {
@@ -327,15 +356,33 @@ TEST(Baseline4pt, CamerasAboveOneAnotherAlongTheAxisSayNothingOfTheLength) {
   }
 }
 
+// Two starts that end at the same root of zero are one.
+TEST(Baseline4pt, PureTranslationIsFoundOnce) {
+  ProblemOptions options;
+  options.cameras = IntraPairs();
+  options.max_rotation_deg = 0.0;
+  for (int seed = 0; seed < 1000; ++seed) {
+    const RandomProblem problem = MakeRandomProblem(seed, options);
+    Solutions solutions;
+    Solve4ptApproxPolished(problem.Prepare(PriorKind::kVertical), kSample, &solutions);
+    int at_truth = 0;
+    for (const Solution& solution : solutions) {
+      at_truth += RotationError(problem.truth.R, solution.R) < 1e-10 ? 1 : 0;
+    }
+    EXPECT_LE(at_truth, 1) << seed;
+  }
+}
+
 TEST(Baseline4pt, NonFiniteInputGivesNoFiniteMotion) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  for (const Case& c : kAll) {
+  for (const Case& c : kBothSystems) {
     for (const CameraPairs& cameras : {InterPairs(), IntraPairs(), CameraPairs{{0, 0}}}) {
       ProblemOptions options;
       options.cameras = cameras;
       for (const double value : {kNan, kInfinity}) {
-        for (int k = 0; k < 4; ++k) {
+        const int sample_size = c.prior == PriorKind::kPlanar ? 3 : 4;
+        for (int k = 0; k < sample_size; ++k) {
           RandomProblem problem = MakeRandomProblem(k, options);
           problem.matches[k].pixel2.x() = value;
           Solutions solutions;
