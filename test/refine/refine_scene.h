@@ -16,6 +16,7 @@
 #include "rigel/core/pose.h"
 #include "rigel/core/random.h"
 #include "rigel/problems/synthetic.h"
+#include "rigel/refine/refine.h"
 
 namespace rigel {
 
@@ -34,6 +35,10 @@ inline FramePair ScenePair(const SceneOptions& options, int index, const Pose& t
   std::string error;
   EXPECT_TRUE(MakeScenePair(options, index, truth, &pair, &error)) << error;
   return pair;
+}
+
+inline RefineSummary RefinePair(const RefineOptions& options, const FramePair& pair, Pose* pose) {
+  return Refine(options, pair.rig, pair.matches, pair.prior, pose);
 }
 
 // R <- Exp(d) R, t <- t + e.
