@@ -110,27 +110,11 @@ DirectSample::DirectSample(const PreparedMatches& matches, const int* sample) : 
   }
 }
 
-void DirectSample::Determinant(double c[7]) const {
-  Pair sum[7];
-  for (Pair& s : sum) s.setZero();
-  laplace::ForEachTerm([&](auto rows) {
-    const auto xz = rows.MinorsIJ(x0, x1, z0, z1);
-    const Pair y0k0 = rows.MinorPQ(y0, k0);
-    const Pair y0k1 = rows.MinorPQ(y0, k1);
-    const Pair y0k2 = rows.MinorPQ(y0, k2);
-    const Pair yk[5] = {y0k0, y0k1 + rows.MinorPQ(y1, k0), y0k2 - y0k0 + rows.MinorPQ(y1, k1),
-                        rows.MinorPQ(y1, k2) - y0k1, -y0k2};
-    for (int n = 0; n < 5; ++n) {
-      for (int m = 0; m < 3; ++m) sum[n + m] += xz[m] * yk[n];
-    }
-  });
-  for (int n = 0; n < 7; ++n) c[n] = sum[n].sum();
-}
-
-void DirectSample::Determinant(double c[6], double first_order[4]) const {
-  Pair first[4], rest[5];
+void DirectSample::Determinant(double c[7], double first_order[4]) const {
+  Pair first[4], rest[5], quadratic[5];
   for (Pair& f : first) f.setZero();
   for (Pair& r : rest) r.setZero();
+  for (Pair& q : quadratic) q.setZero();
   laplace::ForEachTerm([&](auto rows) {
     const auto xz = rows.MinorsIJ(x0, x1, z0, z1);
     const Pair y0k0 = rows.MinorPQ(y0, k0);
@@ -145,12 +129,19 @@ void DirectSample::Determinant(double c[6], double first_order[4]) const {
       rest[m + 1] += xz[m] * second;
       rest[m + 2] -= xz[m] * y0k1;
     }
+    if (deflated_) return;
+    const Pair y0k2 = rows.MinorPQ(y0, k2);
+    const Pair y1k2 = rows.MinorPQ(y1, k2);
+    for (int m = 0; m < 3; ++m) {
+      quadratic[m] += xz[m] * y0k2;
+      quadratic[m + 1] += xz[m] * y1k2;
+      quadratic[m + 2] -= xz[m] * y0k2;
+    }
   });
-  for (int n = 0; n < 4; ++n) first_order[n] = first[n].sum();
-  c[0] = first_order[0];
-  for (int n = 1; n < 4; ++n) c[n] = first_order[n] + rest[n - 1].sum();
-  c[4] = rest[3].sum();
-  c[5] = rest[4].sum();
+  for (int n = 0; n < 7; ++n) c[n] = 0.0;
+  for (int n = 0; n < 4; ++n) c[n] = first_order[n] = first[n].sum();
+  for (int n = 0; n < 5; ++n) c[n + 1] += rest[n].sum();
+  for (int n = 0; n < 5; ++n) c[n + 2] += quadratic[n].sum();
 }
 
 void DirectSample::AddSolution(double z, Solutions* solutions) const {

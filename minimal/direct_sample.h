@@ -42,15 +42,12 @@ class DirectSample {
   // False if no match moves, or one is not finite: nothing can be said of translation.
   bool has_parallax() const { return has_parallax_; }
 
-  // Coefficients of the determinant, ascending in z = tan(a/2): degree 6, or 5 if deflated; c[6] is
-  // written in both cases. The structure of the columns x and z takes 1 + z^2 out of the degree 8
-  // that the frames of the matches themselves have (Sweeney et al. 2014).
-  void Determinant(double c[7]) const;
-
-  // The same with the cubic of the first-order form in `first_order`, ascending: y and k to first
-  // order in z. Deflated samples only. Its roots are a tenth as biased as those of the depth form,
-  // because nothing is multiplied by depths of tens of metres.
-  void Determinant(double c[6], double first_order[4]) const;
+  // Coefficients of the determinant, ascending in z = tan(a/2): degree 6, or 5 if deflated. The
+  // structure of the columns x and z takes 1 + z^2 out of the degree 8 that the frames of the
+  // matches themselves have (Sweeney et al. 2014). `first_order`: those of the first-order form of
+  // deflated samples, a cubic, with y and k to first order in z. Its roots are a tenth as biased as
+  // those of the depth form, because nothing is multiplied by depths of tens of metres.
+  void Determinant(double c[7], double first_order[4]) const;
 
   // Adds the motion with z = tan(a/2): R exact from the angle, t from the null vector. Adds
   // nothing if that does not exist.

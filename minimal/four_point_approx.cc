@@ -26,18 +26,12 @@ int Solve4ptApproxPolished(const PreparedMatches& matches, const int* sample,
   solutions->clear();
   const DirectSample rows(matches, sample);
   if (!rows.has_parallax()) return 0;
-  double c[7];
-  double starts[3], roots[3];
-  int num_roots;
-  if (rows.deflated()) {
-    double first_order[4];
-    rows.Determinant(c, first_order);
-    num_roots = PolishRoots<5>(c, starts, CubicStarts(first_order, starts), roots);
-  } else {
-    rows.Determinant(c);
-    // The Taylor polynomial of order 3.
-    num_roots = PolishRoots<6>(c, starts, CubicStarts(c, starts), roots);
-  }
+  double c[7], first_order[4], starts[3], roots[3];
+  rows.Determinant(c, first_order);
+  // Of samples that are not deflated the Taylor polynomial of order 3.
+  const int num_starts = CubicStarts(rows.deflated() ? first_order : c, starts);
+  const int num_roots = rows.deflated() ? PolishRoots<5>(c, starts, num_starts, roots)
+                                        : PolishRoots<6>(c, starts, num_starts, roots);
   for (int k = 0; k < num_roots; ++k) rows.AddSolution(roots[k], solutions);
   return solutions->size();
 }

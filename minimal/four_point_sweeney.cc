@@ -9,8 +9,8 @@ int Solve4ptSweeney(const PreparedMatches& matches, const int* sample, Solutions
   solutions->clear();
   const DirectSample rows(matches, sample);
   if (!rows.has_parallax()) return 0;
-  double c[7];
-  rows.Determinant(c);
+  double c[7], first_order[4];
+  rows.Determinant(c, first_order);
   double roots[6];
   const int num_roots = rows.deflated() ? RealRoots<5>(c, roots) : RealRoots<6>(c, roots);
   for (int n = 0; n < num_roots; ++n) rows.AddSolution(roots[n], solutions);
