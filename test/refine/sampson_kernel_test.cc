@@ -205,7 +205,7 @@ TEST(SampsonKernel, ProjectionGivesTheSameBitsOnEveryPath) {
 TEST(SampsonKernel, AMatchAtAnEpipoleAddsNothing) {
   // F = [e]x with the epipole at the origin of both images.
   const double F[9] = {0, -1, 0, 1, 0, 0, 0, 0, 0};
-  const double zero[1] = {0.0}, one[1] = {1.0};
+  const double zero[kKernelPadding] = {}, one[1] = {1.0};
   const PixelArrays pixels{zero, zero, zero, zero, 1};
   SampsonSums sums;
   SumSampson(SampsonKernelOptions(), pixels, one, F, 1e-30, true, &sums);
