@@ -70,24 +70,37 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
 GroupedMatches GroupedMatches::EvenSubset(size_t count) const {
   const size_t n = matches_.size();
   count = std::min(count, n);
+  // floor(i n / count) for i = 0, 1, ...; divisions would take longer than all the rest.
+  std::vector<size_t> taken(count);
+  for (size_t i = 0, k = 0, remainder = 0; i < count; ++i) {
+    taken[i] = k;
+    k += n / count;
+    remainder += n % count;
+    if (remainder >= count) {
+      remainder -= count;
+      ++k;
+    }
+  }
   GroupedMatches subset;
   subset.rig_ = rig_;
   subset.unproject_ = unproject_;
-  subset.matches_.reserve(count);
   subset.original_.resize(count);
   std::iota(subset.original_.begin(), subset.original_.end(), 0);
+  subset.matches_.reserve(count);
+  for (const size_t k : taken) subset.matches_.push_back(matches_[k]);
   subset.pixels_.resize(4 * count + kKernelPadding);
   subset.directions_.resize(6 * count + kKernelPadding);
+  const auto take = [&](const double* coordinate, double* result) {
+    for (size_t i = 0; i < count; ++i) result[i] = coordinate[taken[i]];
+  };
+  for (int c = 0; c < 4; ++c) take(pixels_.data() + c * n, subset.pixels_.data() + c * count);
+  for (int c = 0; c < 6; ++c) {
+    take(directions_.data() + c * n, subset.directions_.data() + c * count);
+  }
   size_t next = 0;
   for (const MatchGroup& group : groups_) {
-    const size_t end = group.begin + group.size;
     const size_t begin = next;
-    for (; next < count && next * n / count < end; ++next) {
-      const size_t k = next * n / count;
-      subset.matches_.push_back(matches_[k]);
-      for (int i = 0; i < 4; ++i) subset.pixels_[i * count + next] = pixels_[i * n + k];
-      for (int i = 0; i < 6; ++i) subset.directions_[i * count + next] = directions_[i * n + k];
-    }
+    while (next < count && taken[next] < static_cast<size_t>(group.begin + group.size)) ++next;
     if (next == begin) continue;
     subset.groups_.push_back(
         {group.camera1, group.camera2, static_cast<int>(begin), static_cast<int>(next - begin)});

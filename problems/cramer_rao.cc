@@ -75,30 +75,47 @@ std::optional<CramerRaoBound> ComputeCramerRaoBound(const RefineOptions& options
   std::vector<char> mask;
   // An outlier that fits the truth by chance is no information.
   const double gate = std::max(options.threshold_px, kGateSigmas * *pair.noise_px);
-  SelectPlausibleInliers(matches, truth, gate, &errors, &mask);
-  Matrix6d information = NoiseFreeInformation(pair, matches, mask, truth);
-  if (options.use_prior) {
-    const PriorResiduals prior(pair.prior, options.prior_kind, truth);
-    PriorResiduals::Residuals r;
-    PriorResiduals::Jacobian J;
-    prior.Evaluate(truth, &r, &J);
-    information += J.transpose() * J;
-  }
-
-  CramerRaoBound bound;
-  bound.relative_scale = RelativeScaleSigma(information, truth);
-  const bool scale_free =
-      options.scale == ScaleMode::kFree ||
-      (options.scale == ScaleMode::kAuto && bound.relative_scale <= kScaleObservableRatio);
-  MotionBasis basis = FullBasis(truth, scale_free);
   const bool prior_exact =
       options.form == RefineForm::kPrior || options.form == RefineForm::kPriorDepths;
-  if (prior_exact) {
-    Alignment alignment;
-    if (!MakeAlignment(pair.prior, options.prior_kind, &alignment, &error)) return std::nullopt;
-    basis = PriorBasis(truth, alignment, scale_free);
+  Alignment alignment;
+  if (prior_exact && !MakeAlignment(pair.prior, options.prior_kind, &alignment, &error)) {
+    return std::nullopt;
   }
-  if (!CovarianceOfBasis(information, basis, &bound.covariance)) return std::nullopt;
+  const auto set_covariance = [&](Matrix6d information, CramerRaoBound* bound) {
+    if (options.use_prior) {
+      const PriorResiduals prior(pair.prior, options.prior_kind, truth);
+      PriorResiduals::Residuals r;
+      PriorResiduals::Jacobian J;
+      prior.Evaluate(truth, &r, &J);
+      information += J.transpose() * J;
+    }
+    bound->relative_scale = RelativeScaleSigma(information, truth);
+    const bool scale_free =
+        options.scale == ScaleMode::kFree ||
+        (options.scale == ScaleMode::kAuto && bound->relative_scale <= kScaleObservableRatio);
+    const MotionBasis basis =
+        prior_exact ? PriorBasis(truth, alignment, scale_free) : FullBasis(truth, scale_free);
+    return CovarianceOfBasis(information, basis, &bound->covariance);
+  };
+
+  const auto fit_at_truth = [&](InlierFit* fit) {
+    fit->noise_px = *pair.noise_px;
+    fit->is_minimum = false;
+    matches.SelectInliers(truth, gate, &errors, &fit->members);
+    EpipoleWeights(matches, truth, fit->noise_px, &fit->weights);
+    std::vector<double> weights = fit->weights;
+    for (size_t k = 0; k < weights.size(); ++k) weights[k] *= fit->members[k];
+    const double variance = fit->noise_px * fit->noise_px;
+    CramerRaoBound all;
+    if (!set_covariance(SampsonInformation(matches, weights, truth) / variance, &all)) return false;
+    fit->covariance = all.covariance;
+    return true;
+  };
+  SelectPlausibleInliers(matches, truth, gate, fit_at_truth, &errors, &mask);
+  CramerRaoBound bound;
+  if (!set_covariance(NoiseFreeInformation(pair, matches, mask, truth), &bound)) {
+    return std::nullopt;
+  }
   bound.rotation = RotationSigma(bound.covariance);
   bound.direction = DirectionSigma(bound.covariance, truth.t);
   return bound;

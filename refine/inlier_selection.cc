@@ -6,25 +6,22 @@
 #include <cstdint>
 #include <cstring>
 
+#include "rigel/refine/normal_equations.h"
+
 namespace rigel {
 namespace {
 
-// Inliers that a place where there is no other is likely to have.
-constexpr double kPriorInliers = 0.1;
-
-// Counts of matches by the logarithm of their parallax, four bins to a factor of two.
+// Counts of matches by the logarithm of a number of at most 1, two bins to a factor of two.
 class Histogram {
  public:
   static constexpr int kBins = 96;
-  static constexpr int kReach = 4;
-  static int Bin(double sin2_parallax) {
-    // floor(4 log2(sine)) = floor(2 log2(sin^2)), sin^2 = m 2^e with m in [1, 2): from its bits,
-    // which are in order.
+  static int Bin(double value) {
+    // floor(2 log2(value)), value = m 2^e with m in [1, 2): from its bits, which are in order.
     constexpr uint64_t kRoot2Bits = 0x6a09e667f3bcd;
     constexpr int kMantissa = 52, kBias = 1023;
-    const double value = std::max(sin2_parallax, 1e-14);
+    const double positive = std::max(value, 1e-14);
     uint64_t bits;
-    std::memcpy(&bits, &value, sizeof bits);
+    std::memcpy(&bits, &positive, sizeof bits);
     const int exponent = static_cast<int>(bits >> kMantissa) - kBias;
     const bool upper_half = (bits & ((uint64_t{1} << kMantissa) - 1)) >= kRoot2Bits;
     return std::clamp(kBins - 2 + 2 * exponent + (upper_half ? 1 : 0), 1, kBins - 2);
@@ -33,13 +30,12 @@ class Histogram {
     ++counts_[bin];
     ++total_;
   }
-  // How many there are within a factor of 1.3 of the parallax of each bin, as the mean over a wider
-  // neighbourhood tells: down to a half, as the parallax of inliers ends somewhere, and up to
-  // `above` bins.
-  std::array<double, kBins> Near(int above) const {
+  // How many there are in three bins about each one, by the mean of those from `below` under it to
+  // `above` over it.
+  std::array<double, kBins> Near(int below, int above) const {
     std::array<double, kBins> near;
     for (int bin = 0; bin < kBins; ++bin) {
-      const int first = std::max(bin - kReach, 0);
+      const int first = std::max(bin - below, 0);
       const int last = std::min(bin + above, kBins - 1);
       int sum = 0;
       for (int k = first; k <= last; ++k) sum += counts_[k];
@@ -48,11 +44,11 @@ class Histogram {
     return near;
   }
   int Total() const { return total_; }
-  // sin^2 of the 90th percentile.
-  double HighSin2() const {
+  // The 90th percentile.
+  double High() const {
     int bin = kBins - 1;
     for (int above = counts_[bin]; bin > 0 && above < 0.1 * total_;) above += counts_[--bin];
-    return std::exp2(2.0 * (bin - (kBins - 2) + 1) / 4.0);
+    return std::exp2(0.5 * (bin - (kBins - 2) + 1));
   }
 
  private:
@@ -60,67 +56,160 @@ class Histogram {
   int total_ = 0;
 };
 
+using Numbers = std::array<double, Histogram::kBins>;
+
+// Inliers of about as large a number. What these count by themselves is half a match.
+Numbers OtherInliers(const Histogram& in_gate, double prior) {
+  // The inliers end somewhere: hardly above.
+  Numbers near = in_gate.Near(4, 1);
+  for (double& n : near) n += prior - 0.5;
+  return near;
+}
+
+// With an inter-camera baseline the parallax is of another size.
+enum Kind { kIntra, kInter };
+
+// Matches in front of the cameras.
+struct Placed {
+  std::vector<int> in_gate, in_band;
+};
+
+// Clears `selected` where the parallax, of which `sin2` is the squared sine, says so.
+void JudgeByParallax(const Placed& placed, const std::vector<double>& sin2,
+                     std::vector<char>* selected) {
+  // Inliers that a place where there is no other is likely to have.
+  constexpr double kPrior = 0.1;
+  constexpr int kReach = 4;
+  if (placed.in_gate.empty() || placed.in_band.empty()) return;
+  Histogram in_gate, in_band;
+  for (const int k : placed.in_gate) in_gate.Add(Histogram::Bin(sin2[k]));
+  for (const int k : placed.in_band) in_band.Add(Histogram::Bin(sin2[k]));
+  const double high2 = in_gate.High();
+  const Numbers inliers = OtherInliers(in_gate, kPrior);
+  const Numbers band = in_band.Near(kReach, kReach);
+  for (const int k : placed.in_gate) {
+    const int bin = Histogram::Bin(sin2[k]);
+    const double outliers = band[bin] / (kBandEnd - kBandBegin);
+    const double limit = std::clamp(kMaxOutlierProbability * high2 / std::max(sin2[k], 1e-300),
+                                    kMinOutlierProbability, kMaxOutlierProbability);
+    if (outliers > limit * (outliers + inliers[bin])) (*selected)[k] = 0;
+  }
+}
+
+// Clears `selected` where the leverage says so.
+void JudgeByLeverage(const GroupedMatches& matches, const Pose& pose, double gate_px,
+                     const InlierFit& fit, const std::vector<double>& squared_errors,
+                     const Placed (&placed)[2], int num_outliers, std::vector<char>* selected) {
+  constexpr double kPrior = 0.02;
+  constexpr int kReach = 8;
+  // Less does no harm. Those of an eighth of it on have a say in how many there are about it.
+  constexpr double kMinLeverage = 0.1;
+  constexpr double kMaxLeverage = 0.9999;
+  // Outliers that are in the band, of all: their prior.
+  constexpr double kShareInBand = 0.1;
+  // Histograms end at 1.
+  constexpr double kMaxFactor = 1024.0;
+  // Errors of real matches have longer tails than normal ones: what is beyond is no evidence.
+  constexpr double kMaxDeviations2 = 9.0;
+  const double variance = fit.noise_px * fit.noise_px;
+  std::vector<double> leverages(matches.size());
+  for (const MatchGroup& group : matches.groups()) {
+    Leverages(matches, group, pose, fit.weights.data() + group.begin, fit.covariance / variance,
+              leverages.data() + group.begin);
+  }
+  const auto leverage_of = [&](int k) {
+    const double h = leverages[k];
+    return std::min(fit.members[k] ? h : h / (1.0 + h), kMaxLeverage);
+  };
+  std::vector<int> judged;
+  Histogram in_gate, in_band;
+  // By h / (1 - h), the variance of the others' prediction.
+  const auto bin_of = [](double h) { return Histogram::Bin(h / (1.0 - h) / kMaxFactor); };
+  for (const Placed& matches_of_kind : placed) {
+    for (const int k : matches_of_kind.in_gate) {
+      const double h = leverage_of(k);
+      if (h < kMinLeverage / 8.0) continue;
+      in_gate.Add(bin_of(h));
+      if (h >= kMinLeverage) judged.push_back(k);
+    }
+  }
+  if (judged.empty()) return;
+  for (const Placed& matches_of_kind : placed) {
+    for (const int k : matches_of_kind.in_band) in_band.Add(bin_of(leverage_of(k)));
+  }
+  const Numbers inliers = OtherInliers(in_gate, kPrior);
+  const Numbers band = in_band.Near(kReach, kReach);
+  const double prior = kShareInBand * num_outliers * 3.0 / (2 * kReach + 1);
+  for (const int k : judged) {
+    const double h = leverage_of(k);
+    // Squared residual over variance. What the others predict it to be leaves r / (1 - h), of the
+    // variance sigma^2 / (1 - h), where r is what least squares left.
+    const double s = fit.weights[k] * fit.weights[k] * squared_errors[k] / variance;
+    const double deviations2 = fit.members[k] && fit.is_minimum ? s / (1.0 - h) : s * (1.0 - h);
+    // Densities of the deviation: uniform in pixels on both sides, and normal.
+    const int bin = bin_of(h);
+    const double per_px = (band[bin] + prior) / (2.0 * (kBandEnd - kBandBegin) * gate_px);
+    const double as_outlier = per_px * fit.noise_px / std::sqrt(1.0 - h);
+    constexpr double kInvSqrt2Pi = 0.3989422804014327;
+    const double as_inlier =
+        inliers[bin] * kInvSqrt2Pi * std::exp(-0.5 * std::min(deviations2, kMaxDeviations2));
+    if (as_outlier > as_inlier) (*selected)[k] = 0;
+  }
+}
+
 }  // namespace
 
 int SelectPlausibleInliers(const GroupedMatches& matches, const Pose& pose, double gate_px,
-                           std::vector<double>* squared_errors, std::vector<char>* inliers) {
-  // With an inter-camera baseline the parallax is of another size.
-  enum { kIntra, kInter };
-  Histogram within[2], beyond[2];
+                           const InlierFitFunction& fit, std::vector<double>* squared_errors,
+                           std::vector<char>* inliers) {
   const int n = matches.size();
+  const double gate2 = gate_px * gate_px;
+  constexpr double kBegin2 = kBandBegin * kBandBegin;
   squared_errors->resize(n);
   inliers->resize(n);
-  std::vector<char> bins(n);
-  std::vector<double> sin2(n);
-  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = pose.R;
-  const double gate2 = gate_px * gate_px;
-  int count = 0, num_beyond = 0;
+  Placed placed[2];
+  for (Placed& kind : placed) {
+    // One more than there are: what is none of them is overwritten.
+    kind.in_gate.resize(n + 1);
+    kind.in_band.resize(n + 1);
+  }
+  int in_gate[2] = {}, in_band[2] = {}, num_outliers = 0;
   for (const MatchGroup& group : matches.groups()) {
+    const Kind kind = group.camera1 == group.camera2 ? kIntra : kInter;
     const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = matches.Fundamental(group, pose);
-    const RayArrays rays = matches.Directions(group);
-    const int kind = group.camera1 == group.camera2 ? kIntra : kInter;
     double* errors = squared_errors->data() + group.begin;
     char* selected = inliers->data() + group.begin;
-    SelectInFront(matches.Pixels(group), rays, F.data(), matches.MotionOf(group, pose, gate_px),
-                  kBandEnd * kBandEnd * gate2, errors, selected);
-    SquaredParallax(rays, R.data(), group.size, sin2.data() + group.begin);
+    SelectInFront(matches.Pixels(group), matches.Directions(group), F.data(),
+                  matches.MotionOf(group, pose, gate_px), kBandEnd * kBandEnd * gate2, errors,
+                  selected);
     for (int k = 0; k < group.size; ++k) {
-      if (!selected[k]) continue;
-      const int bin = Histogram::Bin(sin2[group.begin + k]);
-      bins[group.begin + k] = static_cast<char>(bin);
-      const bool fits = errors[k] < gate2;
-      const bool outlier = errors[k] >= kBandBegin * kBandBegin * gate2;
-      if (fits) within[kind].Add(bin);
-      if (outlier) beyond[kind].Add(bin);
-      selected[k] = fits;
-      count += fits;
-      num_beyond += outlier;
+      const int fits = (selected[k] != 0) & (errors[k] < gate2);
+      const int outlier = (selected[k] == 0) | (errors[k] >= kBegin2 * gate2);
+      placed[kind].in_gate[in_gate[kind]] = group.begin + k;
+      in_gate[kind] += fits;
+      placed[kind].in_band[in_band[kind]] = group.begin + k;
+      in_band[kind] += outlier & selected[k];
+      num_outliers += outlier;
+      selected[k] = static_cast<char>(fits);
     }
   }
-  if (num_beyond == 0) return count;
-  double high2[2] = {};
-  std::array<double, Histogram::kBins> within_near[2], beyond_near[2];
-  for (const int kind : {kIntra, kInter}) {
-    if (within[kind].Total() == 0) continue;
-    high2[kind] = within[kind].HighSin2();
-    within_near[kind] = within[kind].Near(1);
-    beyond_near[kind] = beyond[kind].Near(Histogram::kReach);
-  }
+  if (num_outliers == 0) return in_gate[kIntra] + in_gate[kInter];
+  std::vector<double> sin2(n);
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = pose.R;
   for (const MatchGroup& group : matches.groups()) {
-    const int kind = group.camera1 == group.camera2 ? kIntra : kInter;
-    for (int k = group.begin; k < group.begin + group.size; ++k) {
-      if (!(*inliers)[k]) continue;
-      const double outliers = beyond_near[kind][bins[k]] / (kBandEnd - kBandBegin);
-      const double others = within_near[kind][bins[k]] - 0.5 + kPriorInliers;
-      const double limit =
-          std::clamp(kMaxOutlierProbability * high2[kind] / std::max(sin2[k], 1e-300),
-                     kMinOutlierProbability, kMaxOutlierProbability);
-      if (outliers <= limit * (outliers + others)) continue;
-      (*inliers)[k] = 0;
-      --count;
-    }
+    SquaredParallax(matches.Directions(group), R.data(), group.size, sin2.data() + group.begin);
   }
-  return count;
+  for (const Kind kind : {kIntra, kInter}) {
+    placed[kind].in_gate.resize(in_gate[kind]);
+    placed[kind].in_band.resize(in_band[kind]);
+    JudgeByParallax(placed[kind], sin2, inliers);
+  }
+  InlierFit at_pose;
+  if (fit != nullptr && fit(&at_pose)) {
+    JudgeByLeverage(matches, pose, gate_px, at_pose, *squared_errors, placed, num_outliers,
+                    inliers);
+  }
+  return static_cast<int>(std::count(inliers->begin(), inliers->end(), 1));
 }
 
 }  // namespace rigel

@@ -1,28 +1,50 @@
 // Which matches a refinement takes as inliers of a motion.
+//
+// An outlier that fits by chance is no harm in the crowd. Where it has no company it is: near one
+// such match, of larger parallax than the others or of more leverage, turns t by many of its
+// standard deviations and is believed, because what it pulls follows. It is known by what surrounds
+// it: how many outliers of its kind there must be within the gate is told by those that fit far
+// worse, kBandBegin to kBandEnd gates, where a motion finds them as often as within the gate.
 #ifndef RIGEL_REFINE_INLIER_SELECTION_H_
 #define RIGEL_REFINE_INLIER_SELECTION_H_
 
+#include <functional>
 #include <vector>
 
 #include "rigel/core/pose.h"
 #include "rigel/minimal/grouped_matches.h"
+#include "rigel/refine/uncertainty.h"
 
 namespace rigel {
+
+// A fit that leverage is judged by; vectors in grouped order.
+struct InlierFit {
+  double noise_px = 1.0;
+  Matrix6d covariance = Matrix6d::Zero();  // of the motion as those with `members` determine it
+  std::vector<double> weights;  // of each match's residual, if it is a member or were one
+  std::vector<char> members;
+  bool is_minimum = true;  // the motion is that of least squares over the members, not the truth
+};
+// Fills a fit at the motion that is judged; false if there is none.
+using InlierFitFunction = std::function<bool(InlierFit*)>;
 
 // 1 for the matches of a Sampson error below the gate that do not lie behind a camera and are no
 // likelier outliers, else 0, in grouped order; returns their number. `squared_errors`, pixels^2,
 // and `inliers` are resized. `pose` must be at a minimum of its inliers by the gate alone: where it
 // is off, near points do not fit, and would be taken for outliers.
 //
-// Where an outlier fits by chance, its parallax is mostly far larger than that of the inliers, and
-// it says more of the direction of t than a hundred of them. How many such there may be is known
-// from the matches of about the same parallax that fit far worse: outliers fit a motion as often
-// within the gate as within as much of the band from kBandBegin to kBandEnd gates. A match that by
-// these counts is an outlier with too large a probability is left out: above
-// kMaxOutlierProbability at the 90th percentile of the parallax, beyond it less in inverse
-// proportion to its square, as an outlier's harm grows, down to kMinOutlierProbability.
+// By parallax: a match is left out that is an outlier with too large a probability by the counts of
+// those of about its parallax: above kMaxOutlierProbability at the 90th percentile of the parallax,
+// beyond it less in inverse proportion to its square, as an outlier's harm grows, down to
+// kMinOutlierProbability.
+//
+// By leverage, where there are outliers and `fit` gives a fit (null: not at all): h, what share of
+// its own error a match takes out of its residual r. Of outliers of leverage h 1 / (1 - h) times as
+// many end within the gate; inliers are rarer, the larger it is, and r / (sigma sqrt(1 - h)) is
+// normal. What is likelier an outlier by the counts of those of about its leverage is left out.
 int SelectPlausibleInliers(const GroupedMatches& matches, const Pose& pose, double gate_px,
-                           std::vector<double>* squared_errors, std::vector<char>* inliers);
+                           const InlierFitFunction& fit, std::vector<double>* squared_errors,
+                           std::vector<char>* inliers);
 
 inline constexpr double kBandBegin = 8.0;
 inline constexpr double kBandEnd = 24.0;

@@ -39,6 +39,12 @@ RowMajor3d Differentiate(const GroupedMatches& matches, const MatchGroup& group,
   return F;
 }
 
+// Times |p|^2: what rounding can make of a squared gradient of zero.
+double Rounding2(const RowMajor3d& F) {
+  constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
+  return kRounding * kRounding * F.squaredNorm();
+}
+
 }  // namespace
 
 void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatches& matches,
@@ -46,12 +52,21 @@ void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatche
                         const Pose& pose, bool derivatives, MotionNormalEquations* sum) {
   FundamentalDerivatives D;
   const RowMajor3d F = Differentiate(matches, group, pose, &D);
-  constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
   SampsonSums sums;
-  SumSampson(options, pixels, weights, F.data(), kRounding * kRounding * F.squaredNorm(),
-             derivatives, &sums);
+  SumSampson(options, pixels, weights, F.data(), Rounding2(F), derivatives, &sums);
   sum->cost += sums.cost;
   if (derivatives) AddProjected(sums, D, sum->gradient.data(), sum->curvature.data());
+}
+
+void Leverages(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
+               const double* weights, const Eigen::Matrix<double, 6, 6>& covariance,
+               double* leverages) {
+  FundamentalDerivatives D;
+  const RowMajor3d F = Differentiate(matches, group, pose, &D);
+  const Eigen::Map<const Eigen::Matrix<double, 9, 6, Eigen::RowMajor>, 0, Eigen::OuterStride<8>>
+      by_motion(D.d[0]);
+  const Eigen::Matrix<double, 9, 9> C = by_motion * covariance * by_motion.transpose();
+  SampsonLeverages(matches.Pixels(group), weights, F.data(), C.data(), Rounding2(F), leverages);
 }
 
 }  // namespace rigel

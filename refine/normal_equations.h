@@ -23,6 +23,14 @@ void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatche
                         const MatchGroup& group, const PixelArrays& pixels, const double* weights,
                         const Pose& pose, bool derivatives, MotionNormalEquations* sum);
 
+// w^2 J C J' of each match of the group, J the derivative of its Sampson error (pixels) by that
+// perturbation and w its weight. With C the covariance of the motion by matches of unit noise this
+// is the leverage of a match that is one of them: 0 to 1, over all matches the number of
+// parameters.
+void Leverages(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
+               const double* weights, const Eigen::Matrix<double, 6, 6>& covariance,
+               double* leverages);
+
 }  // namespace rigel
 
 #endif  // RIGEL_REFINE_NORMAL_EQUATIONS_H_

@@ -63,7 +63,9 @@ class Refiner {
   double MedianResidual() const;
   void SetNoise();
   double EstimateNoise();
+  void FactorsNearEpipoles(const Pose& pose, std::vector<double>* factors) const;
   bool SetWeights(const Pose& pose);
+  bool DescribeFit(const Pose& pose, InlierFit* fit) const;
   bool ReferenceIsStale(const Pose& pose) const;
   Matrix6d WithPrior(Matrix6d information, const Pose& pose) const;
   Matrix6d Information(const Pose& pose) const;
@@ -93,11 +95,12 @@ class Refiner {
   Alignment alignment_;
   std::vector<double> squared_errors_;
   std::vector<char> mask_, previous_mask_;  // grouped order
-  std::vector<double> match_weights_;       // by the noise of the camera pair; 0: no inlier
+  std::vector<double> noise_weights_;       // by the noise of the camera pair
+  std::vector<double> match_weights_;       // the same; 0: no inlier
   std::vector<double> weights_;             // see SetWeights()
   int num_inliers_ = 0;
   std::optional<Pose> selected_at_;  // what mask_ belongs to
-  bool judges_parallax_ = false;     // inlier_selection.h; at a minimum only
+  bool judges_chance_ = false;       // inlier_selection.h; at a minimum only
   double noise_px_ = 1.0;
   bool scale_free_ = true;
   struct ScaleQuestion {
@@ -124,9 +127,11 @@ bool Refiner::SelectInliers(const Pose& pose) {
   previous_mask_ = mask_;
   const double gate =
       std::max(options_.threshold_px, kGateSigmas * options_.noise_px.value_or(0.0));
-  num_inliers_ = judges_parallax_
-                     ? SelectPlausibleInliers(matches_, pose, gate, &squared_errors_, &mask_)
-                     : matches_.SelectInliers(pose, gate, &squared_errors_, &mask_);
+  num_inliers_ = judges_chance_ ? SelectPlausibleInliers(
+                                      matches_, pose, gate,
+                                      [&](InlierFit* fit) { return DescribeFit(pose, fit); },
+                                      &squared_errors_, &mask_)
+                                : matches_.SelectInliers(pose, gate, &squared_errors_, &mask_);
   return mask_ != previous_mask_;
 }
 
@@ -144,9 +149,11 @@ double Refiner::MedianResidual() const {
 
 // A noise level that is given is that of all.
 void Refiner::SetNoise() {
-  match_weights_.assign(mask_.begin(), mask_.end());
+  noise_weights_.assign(mask_.size(), 1.0);
   // The floor keeps noise-free problems regular.
   noise_px_ = std::max(options_.noise_px.has_value() ? *options_.noise_px : EstimateNoise(), 1e-9);
+  match_weights_.resize(mask_.size());
+  for (size_t k = 0; k < mask_.size(); ++k) match_weights_[k] = mask_[k] * noise_weights_[k];
   summary_.noise_px = noise_px_;
 }
 
@@ -161,7 +168,7 @@ double Refiner::EstimateNoise() {
   const std::vector<double> by_group = GroupNoiseWeights(matches_, squared_errors_, mask_, median);
   for (size_t g = 0; g < by_group.size(); ++g) {
     const MatchGroup& group = matches_.groups()[g];
-    for (int k = group.begin; k < group.begin + group.size; ++k) match_weights_[k] *= by_group[g];
+    for (int k = group.begin; k < group.begin + group.size; ++k) noise_weights_[k] = by_group[g];
   }
   const double noise = 1.4826 * median;
   if (redundancy < kMinRedundancy) return std::max(noise, options_.threshold_px / 3.0);
@@ -336,24 +343,46 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
   return true;
 }
 
-// EpipoleWeights of the inliers and those by the noise of their camera pairs, fixed for a round: as
-// a function of the motion they would draw the epipoles to the matches. True if they changed by
-// more than a tenth.
-bool Refiner::SetWeights(const Pose& pose) {
-  const std::vector<double> previous = weights_;
+// EpipoleWeights, or 1 where they are not asked for.
+void Refiner::FactorsNearEpipoles(const Pose& pose, std::vector<double>* factors) const {
   const bool algebraic =
       options_.residual == ResidualKind::kAlgebraic && options_.form != RefineForm::kBundle;
   if (!options_.epipole_weights || algebraic) {
-    weights_.assign(mask_.size(), 1.0);
+    factors->assign(mask_.size(), 1.0);
   } else {
-    EpipoleWeights(matches_, pose, noise_px_, &weights_);
+    EpipoleWeights(matches_, pose, noise_px_, factors);
   }
+}
+
+// These factors of the inliers and their weights by the noise of their camera pairs, fixed for a
+// round: as a function of the motion they would draw the epipoles to the matches. True if they
+// changed by more than a tenth.
+bool Refiner::SetWeights(const Pose& pose) {
+  const std::vector<double> previous = weights_;
+  FactorsNearEpipoles(pose, &weights_);
   for (size_t k = 0; k < weights_.size(); ++k) weights_[k] *= match_weights_[k];
   bool changed = previous.size() != weights_.size();
   for (size_t k = 0; k < weights_.size() && !changed; ++k) {
     changed = mask_[k] && std::abs(weights_[k] - previous[k]) > 0.1;
   }
   return changed;
+}
+
+// The fit that led to `pose`.
+bool Refiner::DescribeFit(const Pose& pose, InlierFit* fit) const {
+  const MotionBasis basis =
+      PriorIsExact() ? PriorBasis(pose, alignment_, scale_free_) : FullBasis(pose, scale_free_);
+  const Matrix6d information =
+      WithPrior(SampsonInformation(matches_, weights_, pose) / (noise_px_ * noise_px_), pose);
+  if (!CovarianceOfBasis(information, basis, &fit->covariance)) return false;
+  fit->noise_px = noise_px_;
+  FactorsNearEpipoles(pose, &fit->weights);
+  fit->members.resize(weights_.size());
+  for (size_t k = 0; k < weights_.size(); ++k) {
+    fit->members[k] = weights_[k] > 0.0;
+    fit->weights[k] *= noise_weights_[k];
+  }
+  return true;
 }
 
 // A reference chosen at a poor start is a poor one: its rays, taken as exact, hold the motion
@@ -479,7 +508,7 @@ RefineSummary Refiner::Run(Pose* pose) {
   }
   // Are there inliers that fit by chance?
   if (done) {
-    judges_parallax_ = true;
+    judges_chance_ = true;
     selected_at_.reset();
     if (SelectInliers(result)) done = Iterate(&result);
   }

@@ -195,6 +195,15 @@ RIGEL_KERNEL_BODY void AddBlock(LossKind kind, bool newton, bool derivatives, do
   add_rows(rows, size, sum);
 }
 
+// The weights of the last `size` matches, filled up to whole lanes with zeros; returns their
+// number.
+RIGEL_KERNEL_BODY int FillUp(const double* weights, int size, double filled[kBlock]) {
+  const int whole = WholeLanes(size);
+  for (int i = 0; i < size; ++i) filled[i] = weights[i];
+  for (int i = size; i < whole; ++i) filled[i] = 0.0;
+  return whole;
+}
+
 RIGEL_KERNEL_BODY void Sum(LossKind kind, bool newton, bool derivatives, double c,
                            const PixelArrays& pixels, const double* weights, const double F[9],
                            double rounding2, AddRowsFunction* add_rows, SampsonSums* sums) {
@@ -210,12 +219,8 @@ RIGEL_KERNEL_BODY void Sum(LossKind kind, bool newton, bool derivatives, double 
              add_rows, &sum);
   }
   if (begin < pixels.size) {
-    // Filled up to whole lanes with matches of weight zero.
     double rest[kBlock];
-    const int size = pixels.size - begin;
-    const int whole = WholeLanes(size);
-    for (int i = 0; i < size; ++i) rest[i] = weights[begin + i];
-    for (int i = size; i < whole; ++i) rest[i] = 0.0;
+    const int whole = FillUp(weights + begin, pixels.size - begin, rest);
     AddBlock(kind, newton, derivatives, c, pixels, rest, begin, whole, F, rounding2, add_rows,
              &sum);
   }
@@ -251,6 +256,51 @@ RIGEL_KERNEL_BODY void Dispatch(const SampsonKernelOptions& options, bool deriva
     RIGEL_SUM(LossKind::kTruncated);
   }
 #undef RIGEL_SUM
+}
+
+// Lower triangle of C, what is off the diagonal doubled.
+struct QuadraticForm {
+  double q[kEntries][kEntries];
+};
+
+RIGEL_KERNEL_BODY void BlockLeverages(const PixelArrays& pixels, const double* weights, int begin,
+                                      int size, const double F[9], const QuadraticForm& form,
+                                      double rounding2, double* leverages) {
+  Rows rows;
+  Linearize(LossKind::kNone, false, true, 1.0, pixels, weights, begin, size, F, rounding2, &rows);
+  for (int i = 0; i < size; i += kLanes) {
+    Lanes row[kEntries];
+    for (int k = 0; k < kEntries - 1; ++k) row[k] = LanesAt(rows.row[k] + i);
+    row[8] = Lanes{} + 1.0;
+    Lanes sum = {};
+    for (int k = 0; k < kEntries; ++k) {
+      Lanes product = {};
+      for (int j = 0; j <= k; ++j) product += form.q[k][j] * row[j];
+      sum += product * row[k];
+    }
+    const Lanes leverage = sum * LanesAt(rows.weight + i);
+    for (int m = 0; m < kLanes; ++m) leverages[i + m] = leverage[m];
+  }
+}
+
+RIGEL_KERNEL_BODY void Leverages(const PixelArrays& pixels, const double* weights,
+                                 const double F[9], const double C[81], double rounding2,
+                                 double* leverages) {
+  QuadraticForm form;
+  for (int k = 0; k < kEntries; ++k) {
+    for (int j = 0; j < k; ++j) form.q[k][j] = C[9 * k + j] + C[9 * j + k];
+    form.q[k][k] = C[10 * k];
+  }
+  int begin = 0;
+  for (; begin + kBlock <= pixels.size; begin += kBlock) {
+    BlockLeverages(pixels, weights + begin, begin, kBlock, F, form, rounding2, leverages + begin);
+  }
+  if (begin < pixels.size) {
+    double rest[kBlock], last[kBlock];
+    const int whole = FillUp(weights + begin, pixels.size - begin, rest);
+    BlockLeverages(pixels, rest, begin, whole, F, form, rounding2, last);
+    for (int i = begin; i < pixels.size; ++i) leverages[i] = last[i - begin];
+  }
 }
 
 RIGEL_KERNEL_BODY void GradientWeightsBody(const PixelArrays& pixels, const double F[9],
@@ -301,6 +351,12 @@ RIGEL_TARGET_AVX2 void SumAvx2(const SampsonKernelOptions& options, bool derivat
   Dispatch(options, derivatives, pixels, weights, F, rounding2, AddRowsAvx2, sums);
 }
 
+RIGEL_TARGET_AVX2 void LeveragesAvx2(const PixelArrays& pixels, const double* weights,
+                                     const double F[9], const double C[81], double rounding2,
+                                     double* leverages) {
+  Leverages(pixels, weights, F, C, rounding2, leverages);
+}
+
 RIGEL_TARGET_AVX2 void GradientWeightsAvx2(const PixelArrays& pixels, const double F[9],
                                            double floor2, double* weights) {
   GradientWeightsBody(pixels, F, floor2, weights);
@@ -324,6 +380,15 @@ void AddProjected(const SampsonSums& sums, const FundamentalDerivatives& D, doub
     AddProjectedAvx2(sums, D, gradient, curvature);
   } else {
     AddProjectedBody(sums, D, gradient, curvature);
+  }
+}
+
+void SampsonLeverages(const PixelArrays& pixels, const double* weights, const double F[9],
+                      const double C[81], double rounding2, double* leverages, CpuPath path) {
+  if (path == CpuPath::kAvx2) {
+    LeveragesAvx2(pixels, weights, F, C, rounding2, leverages);
+  } else {
+    Leverages(pixels, weights, F, C, rounding2, leverages);
   }
 }
 

@@ -52,6 +52,12 @@ struct FundamentalDerivatives {
 void AddProjected(const SampsonSums& sums, const FundamentalDerivatives& D, double* gradient,
                   double* curvature, CpuPath path = BestCpuPath());
 
+// w^2 (dr/dF) C (dr/dF)' of each match: the variance of its residual r that an error of F brings, C
+// (row-major) being the covariance of F's entries. F, weights, padding and rounding2 as above.
+void SampsonLeverages(const PixelArrays& pixels, const double* weights, const double F[9],
+                      const double C[81], double rounding2, double* leverages,
+                      CpuPath path = BestCpuPath());
+
 // g^2 / (g^2 + floor2), g the gradient of a match by its pixels: EpipoleWeights() of uncertainty.h.
 void GradientWeights(const PixelArrays& pixels, const double F[9], double floor2, double* weights,
                      CpuPath path = BestCpuPath());

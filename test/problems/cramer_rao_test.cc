@@ -39,7 +39,7 @@ Eigen::MatrixXd NumericInformation(const FramePair& pair, double threshold_px,
   const GroupedMatches matches(pair.rig, pair.matches);
   std::vector<double> errors;
   std::vector<char> inliers;
-  SelectPlausibleInliers(matches, *pair.truth, threshold_px, &errors, &inliers);
+  SelectPlausibleInliers(matches, *pair.truth, threshold_px, nullptr, &errors, &inliers);
   for (int k = 0; k < matches.size(); ++k) {
     const Match& m = matches.matches()[k];
     if (!inliers[k]) continue;

@@ -154,6 +154,32 @@ TEST(SampsonKernel, TheCostAloneHasTheSameBits) {
   }
 }
 
+TEST(SampsonKernel, LeveragesAreThoseOfTheJacobians) {
+  const Problem problem = MakeProblem(3, 300);
+  const GroupedMatches& matches = problem.matches;
+  const Matrix6d information = SampsonInformation(matches, problem.weights, problem.pose);
+  const Matrix6d covariance = information.inverse();
+  std::vector<double> leverages(matches.size());
+  double sum = 0.0;
+  for (const MatchGroup& group : matches.groups()) {
+    Leverages(matches, group, problem.pose, problem.weights.data() + group.begin, covariance,
+              leverages.data() + group.begin);
+  }
+  const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
+  const MotionBasis basis = FullBasis(problem.pose, true);
+  std::vector<GroupLinearization> groups;
+  residuals.Linearize(problem.pose, &basis, &groups);
+  for (int k = 0; k < matches.size(); ++k) {
+    Eigen::Matrix<double, 6, 1> j;
+    residuals.Evaluate(groups, k, 6, j.data());
+    j *= problem.weights[k];
+    EXPECT_NEAR(leverages[k], j.dot(covariance * j), 1e-9);
+    sum += leverages[k];
+  }
+  // The trace of a projection onto the six parameters.
+  EXPECT_NEAR(sum, 6.0, 1e-8);
+}
+
 // Any size, so that the last block is of every length.
 TEST(SampsonKernel, EveryPathGivesTheSameBits) {
   if (BestCpuPath() == CpuPath::kBaseline) GTEST_SKIP() << "this machine has one path";
@@ -177,6 +203,11 @@ TEST(SampsonKernel, EveryPathGivesTheSameBits) {
       std::vector<double> a(pixels.size), b(pixels.size);
       GradientWeights(pixels, F.data(), 1e-3, a.data(), CpuPath::kBaseline);
       GradientWeights(pixels, F.data(), 1e-3, b.data(), CpuPath::kAvx2);
+      EXPECT_EQ(a, b);
+      SampsonLeverages(pixels, problem.weights.data(), F.data(), baseline.H, 1e-20, a.data(),
+                       CpuPath::kBaseline);
+      SampsonLeverages(pixels, problem.weights.data(), F.data(), baseline.H, 1e-20, b.data(),
+                       CpuPath::kAvx2);
       EXPECT_EQ(a, b);
     }
   }
