@@ -2,9 +2,9 @@
 //
 // MSAC, MAGSAC++ or inlier-count score, samples as the solver draws them (PROSAC: prosac.h), the
 // number of iterations adapts to the share of inliers, scoring stops early once a hypothesis can no
-// longer win, the best hypothesis of the first min_iterations and each better one after them is
-// locally optimized, and in the end the best ones of a looser score (finalists). Deterministic: the
-// seed fixes the result.
+// longer win or is too unlikely to, the best hypothesis of the first min_iterations and each better
+// one after them is locally optimized, and in the end the best ones of a looser score (finalists).
+// Deterministic: the seed fixes the result.
 #ifndef RIGEL_MINIMAL_RANSAC_H_
 #define RIGEL_MINIMAL_RANSAC_H_
 
@@ -42,6 +42,9 @@ struct RansacOptions {
   bool prosac = true;
   // Scoring stops where a hypothesis can no longer win. Changes the time alone.
   bool early_termination = true;
+  // A hypothesis is left where some of the matches say that it can hardly win (bail-out test, Capel
+  // 2005): of those that would, fewer than one in 700 is lost. For scores that are sums.
+  bool bail_out = true;
   ScoreKind score = ScoreKind::kMsac;
   // Draws again where two matches of a sample lie within min_sample_distance_px of one another:
   // such samples say little. At most kMaxRedraws times.
@@ -77,6 +80,7 @@ struct RansacResult {
 //   MinimalSolver(sample, Solutions*)   number of solutions
 //   QuickScore(model, bound)   not above Score() of the model Admit() makes of it; may stop early
 //                              above `bound`
+//   BailsOut(model, best)      true if it is very unlikely that QuickScore() is below `best`
 //   Admit(Model*)              false if physically impossible; may change the sign of t
 //   Score(model, bound, int* inliers)   lower is better; may stop early above `bound`
 //   LocalOptimize(Model*)      false: unchanged
@@ -104,6 +108,8 @@ struct IsRansacSolver<
             std::declval<const int*>(), std::declval<typename S::Solutions*>())}),
         decltype(double{
             std::declval<const S&>().QuickScore(std::declval<const typename S::Model&>(), 0.0)}),
+        decltype(
+            bool{std::declval<const S&>().BailsOut(std::declval<const typename S::Model&>(), 0.0)}),
         decltype(double{std::declval<const S&>().Score(std::declval<const typename S::Model&>(),
                                                        0.0, std::declval<int*>())}),
         decltype(bool{std::declval<const S&>().Admit(std::declval<typename S::Model*>())}),
@@ -213,6 +219,10 @@ RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOp
       if (capacity > 0) {
         const double loose = solver.LooseScore(model, bound(finalists.Worst(capacity)));
         if (loose < finalists.Worst(capacity)) finalists.Add(solver, model, loose, capacity);
+      }
+      if (options.bail_out && !count && result.found &&
+          solver.BailsOut(model, result.minimal_score)) {
+        continue;
       }
       // Also false for NaN. The quick score never rejects a winner; of a count there is none.
       if (!count &&

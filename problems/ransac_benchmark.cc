@@ -271,6 +271,7 @@ const std::vector<Variant>& Variants() {
       {"min_iterations 1", [](EstimateOptions* o) { o->ransac.min_iterations = 1; }},
       {"no PROSAC", [](EstimateOptions* o) { o->ransac.prosac = false; }},
       {"no early termination", [](EstimateOptions* o) { o->ransac.early_termination = false; }},
+      {"no bail-out test", [](EstimateOptions* o) { o->ransac.bail_out = false; }},
       {"MAGSAC++", [](EstimateOptions* o) { o->ransac.score = ScoreKind::kMagsac; }},
       {"spread samples", [](EstimateOptions* o) { o->ransac.spread_samples = true; }},
   };

@@ -60,6 +60,18 @@ class FramePairSolver {
   double QuickScore(const Model& model, double bound) const {
     return matches_.Score(model, threshold_px_, bound, nullptr, Loss());
   }
+  // Terms are between 0 and t^2: of all sets of so many with this mean those of zeros and t^2 alone
+  // scatter most. The subset is drawn without putting back.
+  bool BailsOut(const Model& model, double best) const {
+    constexpr double kDeviations = 3.0;
+    const double n = matches_.size(), m = subset_.size();
+    if (n < 2.0 * m) return false;
+    const double t2 = threshold_px_ * threshold_px_;
+    const double p = std::min(best / (n * t2), 1.0);
+    const double sigma = std::sqrt(m * p * (1.0 - p) * (1.0 - m / n));
+    const double limit = t2 * (m * p + kDeviations * sigma);
+    return subset_.Score(model, threshold_px_, limit, nullptr, Loss()) > limit;
+  }
   double Score(const Model& model, double bound, int* inliers) const {
     return matches_.ScoreInFront(model, threshold_px_, bound, inliers, Loss());
   }

@@ -256,6 +256,7 @@ struct RigSolver {
   bool Admit(Model*) const { return true; }
   bool LocalOptimize(Model*) const { return false; }
   bool Similar(const Model&, const Model&) const { return false; }
+  bool BailsOut(const Model&, double) const { return false; }
   double LooseScore(const Model& model, double bound) const { return QuickScore(model, bound); }
   bool OptimizeLoosely(Model*) const { return false; }
 

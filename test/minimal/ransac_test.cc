@@ -109,6 +109,12 @@ class LineSolver {
     return LeastSquares(1.0, line);
   }
 
+  bool BailsOut(const Line&, double best) const {
+    ++bail_outs;
+    EXPECT_TRUE(std::isfinite(best));
+    return bail_out_always;
+  }
+
   double LooseScore(const Line& line, double bound) const {
     int inliers = 0;
     return TruncatedSum(line, 9.0, bound, &inliers);
@@ -131,6 +137,7 @@ class LineSolver {
   mutable int scores = 0;
   mutable int quick_scores = 0;
   mutable int optimizations = 0;
+  mutable int bail_outs = 0;
   mutable int loose_optimizations = 0;
   int max_draws = 1 << 30;
   bool nan_first = false;
@@ -141,6 +148,7 @@ class LineSolver {
   bool spoil_optimization = false;
   bool zero_quick_score = false;
   bool refuse_optimization = false;
+  bool bail_out_always = false;
 
  private:
   double TruncatedSum(const Line& line, double threshold2, double bound, int* inliers) const {
@@ -226,6 +234,27 @@ TEST(Ransac, EarlyStopsDoNotChangeTheResult) {
   EXPECT_TRUE(bounded.best == full.best);
   EXPECT_TRUE(bounded.best_minimal == full.best_minimal);
   EXPECT_EQ(bounded.iterations, full.iterations);
+}
+
+TEST(Ransac, AHypothesisThatBailsOutIsNotScored) {
+  LineSolver solver(40, 80);
+  RansacOptions options;
+  options.local_optimization = false;
+  const RansacResult<Line> all = Fit(solver, options);
+  EXPECT_GT(solver.bail_outs, 0);
+  EXPECT_LT(solver.bail_outs, all.hypotheses) << "there is nothing to lose to before the first";
+  solver.bail_out_always = true;
+  solver.quick_scores = 0;
+  EXPECT_TRUE(Fit(solver, options).found);
+  EXPECT_EQ(solver.quick_scores, 1) << "the first wins";
+  solver.bail_outs = 0;
+  options.bail_out = false;
+  EXPECT_TRUE(all.best == Fit(solver, options).best);
+  EXPECT_EQ(solver.bail_outs, 0);
+  options.bail_out = true;
+  options.score = ScoreKind::kInlierCount;
+  Fit(solver, options);
+  EXPECT_EQ(solver.bail_outs, 0) << "a count is no sum";
 }
 
 TEST(Ransac, BestMinimalIsTheBestHypothesisBeforeLocalOptimization) {
