@@ -39,26 +39,30 @@ int Solve2ptChoi(const PreparedMatches& matches, const int* sample, Solutions* s
   if (!(discriminant >= -1e-15 * scale * scale)) return 0;
   const double root = std::sqrt(std::max(discriminant, 0.0));
   const double h = q >= 0 ? -q - root : -q + root;
-  const double candidates[2][2] = {{h, p}, {r, h}};
+
+  // Both solutions at once, side by side: u = (-q - root, p) and (r, -q - root), or with + root.
+  const Eigen::Array2d u0(h, r), u1(p, h);
+  const Eigen::Array2d v0 = N[0] * u0 + N[1] * u1;
+  const Eigen::Array2d v1 = N[2] * u0 + N[3] * u1;
+  const Eigen::Array2d u_inverse = 1.0 / (u0 * u0 + u1 * u1).sqrt();
+  const Eigen::Array2d v_inverse = (det < 0 ? -1.0 : 1.0) / (v0 * v0 + v1 * v1).sqrt();
+  // a is the angle from (cos g, sin g) to (cos p, sin p).
+  const Eigen::Array2d inverse = u_inverse * v_inverse;
+  const Eigen::Array2d c = (u0 * v0 + u1 * v1) * inverse;
+  const Eigen::Array2d s = (u1 * v0 - u0 * v1) * (exchanged ? -inverse : inverse);
+  const Eigen::Array2d bz = exchanged ? v0 * v_inverse : u0 * u_inverse;
+  const Eigen::Array2d bx = exchanged ? v1 * v_inverse : u1 * u_inverse;
 
   const PreparedMatch& reference = m0.parallax2 >= m1.parallax2 ? m0 : m1;
-  for (const double* u : candidates) {
-    const double v[2] = {N[0] * u[0] + N[1] * u[1], N[2] * u[0] + N[3] * u[1]};
-    const double norm2 = (u[0] * u[0] + u[1] * u[1]) * (v[0] * v[0] + v[1] * v[1]);
-    if (!(norm2 > 0.0) || !std::isfinite(norm2)) continue;
-    // a is the angle from (cos g, sin g) to (cos p, sin p).
-    const double scale_uv = (det < 0 ? -1.0 : 1.0) / std::sqrt(norm2);
-    const double c = (u[0] * v[0] + u[1] * v[1]) * scale_uv;
-    const double sine = (u[1] * v[0] - u[0] * v[1]) * scale_uv;
-    const double s = exchanged ? -sine : sine;
-    const double* b = exchanged ? v : u;
+  const int count = root == 0.0 ? 1 : 2;
+  for (int k = 0; k < count; ++k) {
+    if (!std::isfinite(inverse[k])) continue;
     const Eigen::Vector3d t =
-        UnitBaselineTranslation(reference, c, s, Eigen::Vector3d(b[1], 0.0, b[0]));
+        UnitBaselineTranslation(reference, c[k], s[k], Eigen::Vector3d(bx[k], 0.0, bz[k]), 1.0);
     Solution& solution = solutions->Append();
-    solution.R = matches.alignment().Rotation(c, s);
+    solution.R = matches.alignment().Rotation(c[k], s[k]);
     solution.t = matches.alignment().ToFrame2(t);
     solution.has_scale = false;
-    if (root == 0.0) break;
   }
   return solutions->size();
 }
