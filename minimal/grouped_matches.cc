@@ -1,6 +1,7 @@
 #include "rigel/minimal/grouped_matches.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 
 namespace rigel {
@@ -67,13 +68,13 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
   }
 }
 
-GroupedMatches GroupedMatches::EvenSubset(size_t count) const {
+std::vector<size_t> GroupedMatches::StretchBegins(size_t count) const {
   const size_t n = matches_.size();
-  count = std::min(count, n);
-  // floor(i n / count) for i = 0, 1, ...; divisions would take longer than all the rest.
-  std::vector<size_t> taken(count);
-  for (size_t i = 0, k = 0, remainder = 0; i < count; ++i) {
-    taken[i] = k;
+  // floor(i n / count) for i = 0, 1, ..., count; divisions would take longer than all the rest.
+  std::vector<size_t> begins(count + 1);
+  for (size_t i = 0, k = 0, remainder = 0; i <= count; ++i) {
+    begins[i] = k;
+    if (i == count) break;
     k += n / count;
     remainder += n % count;
     if (remainder >= count) {
@@ -81,6 +82,28 @@ GroupedMatches GroupedMatches::EvenSubset(size_t count) const {
       ++k;
     }
   }
+  return begins;
+}
+
+GroupedMatches GroupedMatches::EvenSubset(size_t count) const {
+  std::vector<size_t> taken = StretchBegins(std::min(count, matches_.size()));
+  taken.pop_back();
+  return Subset(taken);
+}
+
+GroupedMatches GroupedMatches::DrawnSubset(size_t count) const {
+  std::vector<size_t> taken = StretchBegins(std::min(count, matches_.size()));
+  uint64_t state = 1;
+  for (size_t i = 0; i + 1 < taken.size(); ++i) {
+    state = state * 6364136223846793005u + 1442695040888963407u;  // Knuth's MMIX
+    taken[i] += (state >> 32) * (taken[i + 1] - taken[i]) >> 32;
+  }
+  taken.pop_back();
+  return Subset(taken);
+}
+
+GroupedMatches GroupedMatches::Subset(const std::vector<size_t>& taken) const {
+  const size_t n = matches_.size(), count = taken.size();
   GroupedMatches subset;
   subset.rig_ = rig_;
   subset.unproject_ = unproject_;

@@ -39,6 +39,9 @@ class GroupedMatches {
   // At most `count` of the matches, evenly over their order: enough to tell a good motion from a
   // bad one. original() is then the position in the subset.
   GroupedMatches EvenSubset(size_t count) const;
+  // The same, but one drawn from each of as many stretches of the order, where it must not matter
+  // that kinds of matches alternate. Always the same draw.
+  GroupedMatches DrawnSubset(size_t count) const;
 
   // Q diag(1 / fx, 1 / fy, 1): centred pixels, with 1 as third coordinate, to directions.
   const Eigen::Matrix3d& Unprojection(int camera) const { return unproject_[camera]; }
@@ -86,6 +89,10 @@ class GroupedMatches {
   void SquaredErrors(const Pose& pose, std::vector<double>* errors) const;
 
  private:
+  // Where `count` stretches of the order begin, and the end.
+  std::vector<size_t> StretchBegins(size_t count) const;
+  GroupedMatches Subset(const std::vector<size_t>& taken) const;
+
   Rig rig_;
   std::vector<MatchGroup> groups_;
   std::vector<Match> matches_;

@@ -43,7 +43,7 @@ struct RansacOptions {
   // Scoring stops where a hypothesis can no longer win. Changes the time alone.
   bool early_termination = true;
   // A hypothesis is left where some of the matches say that it can hardly win (bail-out test, Capel
-  // 2005): of those that would, fewer than one in 700 is lost. For scores that are sums.
+  // 2005): of those that would, at most one in a thousand is lost. For scores that are sums.
   bool bail_out = true;
   ScoreKind score = ScoreKind::kMsac;
   // Draws again where two matches of a sample lie within min_sample_distance_px of one another:

@@ -56,7 +56,7 @@ int Solve2ptChoi(const PreparedMatches& matches, const int* sample, Solutions* s
   const PreparedMatch& reference = m0.parallax2 >= m1.parallax2 ? m0 : m1;
   const int count = root == 0.0 ? 1 : 2;
   for (int k = 0; k < count; ++k) {
-    if (!std::isfinite(inverse[k])) continue;
+    if (inverse[k] == 0.0 || !std::isfinite(inverse[k])) continue;
     const Eigen::Vector3d t =
         UnitBaselineTranslation(reference, c[k], s[k], Eigen::Vector3d(bx[k], 0.0, bz[k]), 1.0);
     Solution& solution = solutions->Append();

@@ -17,9 +17,10 @@ struct CramerRaoBound {
 };
 
 // sigma^2 (J'J)^-1 at the true motion over the parameters that `options.form` frees (for kFull, t
-// on the sphere where scale is not observable), J of the Sampson residuals of the matches whose
-// error there is below options.threshold_px, sigma the pair's noise_px. options.use_prior adds the
-// prior's information. Nothing if the pair lacks truth or noise_px, or the information is singular.
+// on the sphere where scale is not observable), J of the Sampson residuals of the inliers there
+// (SelectPlausibleInliers with the gate of the refinement), sigma the pair's noise_px.
+// options.use_prior adds the prior's information. Nothing if the pair lacks truth or noise_px, or
+// the information is singular.
 std::optional<CramerRaoBound> ComputeCramerRaoBound(const RefineOptions& options,
                                                     const FramePair& pair);
 

@@ -26,6 +26,7 @@ class FramePairSolver {
       : solver_(solver),
         matches_(matches),
         subset_(matches.EvenSubset(kSubset)),
+        drawn_subset_(matches.DrawnSubset(kSubset)),
         sign_subset_(matches.EvenSubset(kSignSubset)),
         prepared_(PreparedMatches::OnDemand(matches, alignment)),
         sampler_(matches, solver.sampling, solver.sample_size, options.max_iterations,
@@ -60,17 +61,19 @@ class FramePairSolver {
   double QuickScore(const Model& model, double bound) const {
     return matches_.Score(model, threshold_px_, bound, nullptr, Loss());
   }
-  // Terms are between 0 and t^2: of all sets of so many with this mean those of zeros and t^2 alone
-  // scatter most. The subset is drawn without putting back.
+  // The sum over the subset is too far above its expectation for a score of `best`. Terms are
+  // between 0 and t^2: of all sets of so many with this mean those of zeros and t^2 alone scatter
+  // most, hypergeometrically, and where few are t^2 with a longer tail than a normal one.
   bool BailsOut(const Model& model, double best) const {
     constexpr double kDeviations = 3.0;
-    const double n = matches_.size(), m = subset_.size();
+    constexpr double kTerms = 2.0;
+    const double n = matches_.size(), m = drawn_subset_.size();
     if (n < 2.0 * m) return false;
     const double t2 = threshold_px_ * threshold_px_;
     const double p = std::min(best / (n * t2), 1.0);
     const double sigma = std::sqrt(m * p * (1.0 - p) * (1.0 - m / n));
-    const double limit = t2 * (m * p + kDeviations * sigma);
-    return subset_.Score(model, threshold_px_, limit, nullptr, Loss()) > limit;
+    const double limit = t2 * (m * p + kDeviations * sigma + kTerms);
+    return drawn_subset_.Score(model, threshold_px_, limit, nullptr, Loss()) > limit;
   }
   double Score(const Model& model, double bound, int* inliers) const {
     return matches_.ScoreInFront(model, threshold_px_, bound, inliers, Loss());
@@ -157,6 +160,7 @@ class FramePairSolver {
   const SolverInfo& solver_;
   const GroupedMatches& matches_;
   GroupedMatches subset_;
+  GroupedMatches drawn_subset_;
   GroupedMatches sign_subset_;
   mutable PreparedMatches prepared_;
   mutable ProsacSampler sampler_;

@@ -58,11 +58,11 @@ class Histogram {
 
 using Numbers = std::array<double, Histogram::kBins>;
 
-// Inliers of about as large a number. What these count by themselves is half a match.
-Numbers OtherInliers(const Histogram& in_gate, double prior) {
-  // The inliers end somewhere: hardly above.
-  Numbers near = in_gate.Near(4, 1);
-  for (double& n : near) n += prior - 0.5;
+// How many inliers but itself an inlier of each bin has near it, and `prior` more.
+Numbers OtherInliers(const Histogram& in_gate, int below, int above, double prior) {
+  Numbers near = in_gate.Near(below, above);
+  const double itself = 3.0 / (below + above + 1);
+  for (double& n : near) n += prior - itself;
   return near;
 }
 
@@ -85,7 +85,8 @@ void JudgeByParallax(const Placed& placed, const std::vector<double>& sin2,
   for (const int k : placed.in_gate) in_gate.Add(Histogram::Bin(sin2[k]));
   for (const int k : placed.in_band) in_band.Add(Histogram::Bin(sin2[k]));
   const double high2 = in_gate.High();
-  const Numbers inliers = OtherInliers(in_gate, kPrior);
+  // The parallax of inliers ends somewhere: few are above.
+  const Numbers inliers = OtherInliers(in_gate, kReach, 1, kPrior);
   const Numbers band = in_band.Near(kReach, kReach);
   for (const int k : placed.in_gate) {
     const int bin = Histogram::Bin(sin2[k]);
@@ -101,16 +102,21 @@ void JudgeByLeverage(const GroupedMatches& matches, const Pose& pose, double gat
                      const InlierFit& fit, const std::vector<double>& squared_errors,
                      const Placed (&placed)[2], int num_outliers, std::vector<char>* selected) {
   constexpr double kPrior = 0.02;
+  constexpr int kInlierReach = 4;
   constexpr int kReach = 8;
-  // Less does no harm. Those of an eighth of it on have a say in how many there are about it.
-  constexpr double kMinLeverage = 0.1;
+  // Less does no harm, and where all have much, as among few matches, none stands out: the mean is
+  // parameters over inliers. Those of an eighth of it on have a say in how many there are about it.
+  constexpr double kHarmless = 0.1;
+  constexpr double kMeans = 3.0;
+  const int num_members = static_cast<int>(std::count(fit.members.begin(), fit.members.end(), 1));
+  const double min_leverage = std::max(kHarmless, kMeans * 6.0 / std::max(num_members, 1));
   constexpr double kMaxLeverage = 0.9999;
   // Outliers that are in the band, of all: their prior.
   constexpr double kShareInBand = 0.1;
   // Histograms end at 1.
   constexpr double kMaxFactor = 1024.0;
-  // Errors of real matches have longer tails than normal ones: what is beyond is no evidence.
-  constexpr double kMaxDeviations2 = 9.0;
+  // Errors of real matches have longer tails than normal ones: from here on as 1 / deviations^2.
+  constexpr double kTail2 = 9.0;
   const double variance = fit.noise_px * fit.noise_px;
   std::vector<double> leverages(matches.size());
   for (const MatchGroup& group : matches.groups()) {
@@ -128,16 +134,16 @@ void JudgeByLeverage(const GroupedMatches& matches, const Pose& pose, double gat
   for (const Placed& matches_of_kind : placed) {
     for (const int k : matches_of_kind.in_gate) {
       const double h = leverage_of(k);
-      if (h < kMinLeverage / 8.0) continue;
+      if (h < min_leverage / 8.0) continue;
       in_gate.Add(bin_of(h));
-      if (h >= kMinLeverage) judged.push_back(k);
+      if (h >= min_leverage) judged.push_back(k);
     }
   }
   if (judged.empty()) return;
   for (const Placed& matches_of_kind : placed) {
     for (const int k : matches_of_kind.in_band) in_band.Add(bin_of(leverage_of(k)));
   }
-  const Numbers inliers = OtherInliers(in_gate, kPrior);
+  const Numbers inliers = OtherInliers(in_gate, kInlierReach, kInlierReach, kPrior);
   const Numbers band = in_band.Near(kReach, kReach);
   const double prior = kShareInBand * num_outliers * 3.0 / (2 * kReach + 1);
   for (const int k : judged) {
@@ -149,10 +155,10 @@ void JudgeByLeverage(const GroupedMatches& matches, const Pose& pose, double gat
     // Densities of the deviation: uniform in pixels on both sides, and normal.
     const int bin = bin_of(h);
     const double per_px = (band[bin] + prior) / (2.0 * (kBandEnd - kBandBegin) * gate_px);
-    const double as_outlier = per_px * fit.noise_px / std::sqrt(1.0 - h);
+    const double as_outlier = per_px * fit.noise_px / (fit.weights[k] * std::sqrt(1.0 - h));
     constexpr double kInvSqrt2Pi = 0.3989422804014327;
-    const double as_inlier =
-        inliers[bin] * kInvSqrt2Pi * std::exp(-0.5 * std::min(deviations2, kMaxDeviations2));
+    const double normal = kInvSqrt2Pi * std::exp(-0.5 * std::min(deviations2, kTail2));
+    const double as_inlier = inliers[bin] * normal * std::min(1.0, kTail2 / deviations2);
     if (as_outlier > as_inlier) (*selected)[k] = 0;
   }
 }

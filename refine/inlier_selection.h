@@ -1,10 +1,10 @@
 // Which matches a refinement takes as inliers of a motion.
 //
-// An outlier that fits by chance is no harm in the crowd. Where it has no company it is: near one
-// such match, of larger parallax than the others or of more leverage, turns t by many of its
-// standard deviations and is believed, because what it pulls follows. It is known by what surrounds
-// it: how many outliers of its kind there must be within the gate is told by those that fit far
-// worse, kBandBegin to kBandEnd gates, where a motion finds them as often as within the gate.
+// An outlier that fits by chance does no harm among many inliers that contradict it. One of far
+// larger parallax or leverage than the others does: the motion follows it, by many standard
+// deviations, until it fits. How many outliers of about its parallax or leverage are to be expected
+// within the gate is counted where they fit far worse, from kBandBegin to kBandEnd gates: there are
+// as many of them to a pixel there.
 #ifndef RIGEL_REFINE_INLIER_SELECTION_H_
 #define RIGEL_REFINE_INLIER_SELECTION_H_
 
@@ -20,9 +20,9 @@ namespace rigel {
 // A fit that leverage is judged by; vectors in grouped order.
 struct InlierFit {
   double noise_px = 1.0;
-  Matrix6d covariance = Matrix6d::Zero();  // of the motion as those with `members` determine it
-  std::vector<double> weights;  // of each match's residual, if it is a member or were one
-  std::vector<char> members;
+  Matrix6d covariance = Matrix6d::Zero();  // of the motion as its members determine it
+  std::vector<double> weights;             // of each match's residual, also if it is no member
+  std::vector<char> members;               // 1 for the matches that were fitted
   bool is_minimum = true;  // the motion is that of least squares over the members, not the truth
 };
 // Fills a fit at the motion that is judged; false if there is none.

@@ -100,7 +100,7 @@ class Refiner {
   std::vector<double> weights_;             // see SetWeights()
   int num_inliers_ = 0;
   std::optional<Pose> selected_at_;  // what mask_ belongs to
-  bool judges_chance_ = false;       // inlier_selection.h; at a minimum only
+  bool excludes_chance_ = false;     // inlier_selection.h; at a minimum only
   double noise_px_ = 1.0;
   bool scale_free_ = true;
   struct ScaleQuestion {
@@ -127,11 +127,11 @@ bool Refiner::SelectInliers(const Pose& pose) {
   previous_mask_ = mask_;
   const double gate =
       std::max(options_.threshold_px, kGateSigmas * options_.noise_px.value_or(0.0));
-  num_inliers_ = judges_chance_ ? SelectPlausibleInliers(
-                                      matches_, pose, gate,
-                                      [&](InlierFit* fit) { return DescribeFit(pose, fit); },
-                                      &squared_errors_, &mask_)
-                                : matches_.SelectInliers(pose, gate, &squared_errors_, &mask_);
+  num_inliers_ = excludes_chance_ ? SelectPlausibleInliers(
+                                        matches_, pose, gate,
+                                        [&](InlierFit* fit) { return DescribeFit(pose, fit); },
+                                        &squared_errors_, &mask_)
+                                  : matches_.SelectInliers(pose, gate, &squared_errors_, &mask_);
   return mask_ != previous_mask_;
 }
 
@@ -508,7 +508,7 @@ RefineSummary Refiner::Run(Pose* pose) {
   }
   // Are there inliers that fit by chance?
   if (done) {
-    judges_chance_ = true;
+    excludes_chance_ = true;
     selected_at_.reset();
     if (SelectInliers(result)) done = Iterate(&result);
   }

@@ -316,24 +316,36 @@ TEST(GroupedMatches, AMotionThatIsNotFiniteWinsNoMatch) {
   }
 }
 
-TEST(GroupedMatches, EvenSubsetIsTheSameAsOfTheMatchesItHolds) {
+TEST(GroupedMatches, SubsetsAreTheSameAsOfTheMatchesTheyHold) {
   const FramePair pair = MakePair(101, 3);
   const GroupedMatches all(pair.rig, pair.matches);
-  for (const size_t count : {0, 1, 3, 40, 101, 500}) {
-    const GroupedMatches subset = all.EvenSubset(count);
-    ASSERT_EQ(subset.size(), static_cast<int>(std::min<size_t>(count, 101)));
-    const GroupedMatches expected(pair.rig, subset.matches());
-    ASSERT_EQ(subset.groups().size(), expected.groups().size());
-    std::vector<double> errors, expected_errors;
-    subset.SquaredErrors(*pair.truth, &errors);
-    expected.SquaredErrors(*pair.truth, &expected_errors);
-    EXPECT_EQ(errors, expected_errors);
-    for (int k = 0; k < subset.size(); ++k) {
-      EXPECT_EQ(subset.original(k), k);
-      EXPECT_EQ(subset.rays(k).ray1.x, expected.rays(k).ray1.x);
-      EXPECT_EQ(subset.rays(k).ray2.s, expected.rays(k).ray2.s);
-      EXPECT_EQ(subset.matches()[k].pixel1,
-                all.matches()[k * 101 / static_cast<int>(subset.size())].pixel1);
+  for (const int count : {0, 1, 3, 40, 101, 500}) {
+    int num_first = 0;
+    for (const bool drawn : {false, true}) {
+      const GroupedMatches subset = drawn ? all.DrawnSubset(count) : all.EvenSubset(count);
+      ASSERT_EQ(subset.size(), std::min(count, 101));
+      const GroupedMatches expected(pair.rig, subset.matches());
+      ASSERT_EQ(subset.groups().size(), expected.groups().size());
+      std::vector<double> errors, expected_errors;
+      subset.SquaredErrors(*pair.truth, &errors);
+      expected.SquaredErrors(*pair.truth, &expected_errors);
+      EXPECT_EQ(errors, expected_errors);
+      for (int k = 0; k < subset.size(); ++k) {
+        EXPECT_EQ(subset.original(k), k);
+        EXPECT_EQ(subset.rays(k).ray1.x, expected.rays(k).ray1.x);
+        EXPECT_EQ(subset.rays(k).ray2.s, expected.rays(k).ray2.s);
+        // One of each stretch: the first one, or any.
+        const auto begin = all.matches().begin() + k * 101 / subset.size();
+        const auto end = all.matches().begin() + (k + 1) * 101 / subset.size();
+        const auto taken = std::find_if(
+            begin, end, [&](const Match& m) { return m.pixel1 == subset.matches()[k].pixel1; });
+        EXPECT_TRUE(drawn ? taken != end : taken == begin);
+        if (drawn) num_first += taken == begin;
+      }
+    }
+    if (count == 40) {
+      EXPECT_LT(num_first, 30);
+      EXPECT_GT(num_first, 5);
     }
   }
 }

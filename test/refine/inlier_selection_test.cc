@@ -95,10 +95,22 @@ TEST(InlierSelection, ChanceOutliersCostNextToNothing) {
   EXPECT_LT(good_lost, good / 1000);
 }
 
-// Near outliers that fit by chance and by their leverage pull the motion along: few, but then the
-// motion is off by tens of what the covariance says. Mean of (error)' C^-1 (error) / 6 over pairs;
-// without outliers it is 1.0.
-TEST(InlierSelection, TheCovarianceHoldsAmongOutliers) {
+// Which of the pair's matches are those of the same scene without outliers.
+std::vector<char> AreInliers(SceneOptions scene, int index, const FramePair& pair) {
+  scene.outlier_share = 0.0;
+  const FramePair clean = ScenePair(scene, index);
+  std::vector<char> good;
+  for (const Match& m : pair.matches) {
+    good.push_back(std::any_of(clean.matches.begin(), clean.matches.end(), [&](const Match& other) {
+      return m.pixel1 == other.pixel1 && m.pixel2 == other.pixel2;
+    }));
+  }
+  return good;
+}
+
+// By leverage, too: few outliers that fit by chance, but then the motion is off by tens of what the
+// covariance says. Mean of (error)' C^-1 (error) / 6 over pairs; without outliers it is 1.0.
+TEST(InlierSelection, ChanceOutliersHardlySpoilTheCovariance) {
   struct Setting {
     int num_matches;
     double outlier_share, inter_share;
@@ -108,7 +120,7 @@ TEST(InlierSelection, TheCovarianceHoldsAmongOutliers) {
                                  Setting{200, 0.2, 0.5, MotionPattern::kRandom},
                                  Setting{100, 0.5, 0.5, MotionPattern::kForward}}) {
     double sum = 0.0;
-    int far_off = 0;
+    int far_off = 0, good = 0, good_lost = 0;
     for (int index = 0; index < 2 * kPairs; ++index) {
       SceneOptions scene;
       scene.num_matches = setting.num_matches;
@@ -125,11 +137,47 @@ TEST(InlierSelection, TheCovarianceHoldsAmongOutliers) {
       const double nees = error.dot(estimate.refine.covariance->ldlt().solve(error)) / 6.0;
       sum += nees;
       far_off += nees > 4.0;
+      const std::vector<char> is_good = AreInliers(scene, index, pair);
+      for (size_t k = 0; k < is_good.size(); ++k) {
+        good += is_good[k];
+        good_lost += is_good[k] && !estimate.refine.inliers[k];
+      }
     }
-    std::printf("[ measured ] NEES %.3f, above 4: %d of %d\n", sum / (2 * kPairs), far_off,
-                2 * kPairs);
+    std::printf("[ measured ] NEES %.3f, above 4: %d of %d; lost %d of %d inliers\n",
+                sum / (2 * kPairs), far_off, 2 * kPairs, good_lost, good);
     EXPECT_LT(sum / (2 * kPairs), 1.2);
     EXPECT_LE(far_off, 4);
+    EXPECT_LT(good_lost, good / 500);
+  }
+}
+
+// Among few matches all have much leverage: none of them stands out.
+TEST(InlierSelection, FewMatchesStayTogether) {
+  for (const int num_matches : {12, 20, 40}) {
+    int lost = 0, good = 0, failures = 0;
+    for (int index = 0; index < 2 * kPairs; ++index) {
+      SceneOptions scene;
+      scene.num_matches = num_matches;
+      scene.outlier_share = 0.2;
+      scene.inter_share = 0.3;
+      scene.motion = MotionPattern::kRandom;
+      const FramePair pair = ScenePair(scene, index);
+      RefineOptions options;
+      options.noise_px = scene.noise_px;
+      Pose pose = *pair.truth;
+      const RefineSummary summary = RefinePair(options, pair, &pose);
+      failures += !summary.IsSolutionUsable();
+      if (!summary.IsSolutionUsable()) continue;
+      const std::vector<char> is_good = AreInliers(scene, index, pair);
+      for (size_t k = 0; k < is_good.size(); ++k) {
+        good += is_good[k];
+        lost += is_good[k] && !summary.inliers[k];
+      }
+    }
+    std::printf("[ measured ] %d matches: %d of %d not refined, lost %d of %d inliers\n",
+                num_matches, failures, 2 * kPairs, lost, good);
+    EXPECT_EQ(failures, 0);
+    EXPECT_LT(lost, good / 80);
   }
 }
 
