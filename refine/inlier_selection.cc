@@ -105,9 +105,10 @@ void JudgeByLeverage(const GroupedMatches& matches, const Pose& pose, double gat
   constexpr int kInlierReach = 4;
   constexpr int kReach = 8;
   // Less does no harm, and where all have much, as among few matches, none stands out: the mean is
-  // parameters over inliers. Those of an eighth of it on have a say in how many there are about it.
+  // parameters over inliers, and twice that is called high (Hoaglin and Welsch 1978). Those of an
+  // eighth of it on have a say in how many there are about it.
   constexpr double kHarmless = 0.1;
-  constexpr double kMeans = 3.0;
+  constexpr double kMeans = 2.0;
   const int num_members = static_cast<int>(std::count(fit.members.begin(), fit.members.end(), 1));
   const double min_leverage = std::max(kHarmless, kMeans * 6.0 / std::max(num_members, 1));
   constexpr double kMaxLeverage = 0.9999;
