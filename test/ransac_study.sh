@@ -45,6 +45,9 @@ table() {
   echo
   echo "## Parts left out or added"
   echo
+  echo "Least iterations and finalists cost time here and are for priors that are off (docs/solver_choice.md). After the bail-out"
+  echo "test early termination saves little. What differs by less than a tenth may be the machine's noise."
+  echo
   table --ransac=ablation --pairs="$pairs"
   echo
   echo "## A car that moves by itself"
