@@ -120,8 +120,9 @@ void JudgeByLeverage(const GroupedMatches& matches, const Pose& pose, double gat
   constexpr double kTail2 = 9.0;
   const double variance = fit.noise_px * fit.noise_px;
   std::vector<double> leverages(matches.size());
+  const Matrix6d of_unit_noise = fit.covariance / variance;
   for (const MatchGroup& group : matches.groups()) {
-    Leverages(matches, group, pose, fit.weights.data() + group.begin, fit.covariance / variance,
+    Leverages(matches, group, pose, fit.weights.data() + group.begin, of_unit_noise,
               leverages.data() + group.begin);
   }
   const auto leverage_of = [&](int k) {

@@ -1,6 +1,7 @@
 // The Cramer-Rao bound against numeric differentiation and against what refinement reaches.
 #include "rigel/problems/cramer_rao.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -182,6 +183,37 @@ TEST(CramerRao, IsThatOfTheExactPixels) {
   }
   std::printf("[ measured ] noisy over exact %.4f\n", std::sqrt(noisy / exact));
   EXPECT_NEAR(std::sqrt(noisy / exact), 1.0, 0.01);
+}
+
+// An outlier that fits by chance is no information, and few matches lose none by that rule: the
+// bound is that of the inliers alone.
+TEST(CramerRao, ChanceOutliersAreNoInformation) {
+  for (const int num_matches : {12, 100}) {
+    double off = 0.0;
+    constexpr int kPairs = 200;
+    for (int index = 0; index < kPairs; ++index) {
+      SceneOptions scene = Scene(0.5, MotionPattern::kForward);
+      scene.num_matches = num_matches;
+      scene.outlier_share = num_matches == 12 ? 0.1 : 0.5;
+      FramePair pair = ScenePair(scene, index);
+      const auto bound = ComputeCramerRaoBound(RefineOptions(), pair);
+      scene.outlier_share = 0.0;
+      const FramePair clean = ScenePair(scene, index);
+      const auto is_outlier = [&](const Match& m) {
+        return std::none_of(clean.matches.begin(), clean.matches.end(), [&](const Match& other) {
+          return m.pixel1 == other.pixel1 && m.pixel2 == other.pixel2;
+        });
+      };
+      pair.matches.erase(std::remove_if(pair.matches.begin(), pair.matches.end(), is_outlier),
+                         pair.matches.end());
+      const auto of_inliers = ComputeCramerRaoBound(RefineOptions(), pair);
+      ASSERT_TRUE(bound.has_value() && of_inliers.has_value());
+      off += std::abs(bound->direction / of_inliers->direction - 1.0) / kPairs;
+    }
+    std::printf("[ measured ] %d matches: off by %.4f in the mean\n", num_matches, off);
+    // By the gate and the parallax alone 0.019 for 100.
+    EXPECT_LT(off, num_matches == 12 ? 0.0005 : 0.016);
+  }
 }
 
 TEST(CramerRao, ThereIsNoneWithoutTruthNoiseOrInformation) {

@@ -137,9 +137,7 @@ TEST(Jacobian, EpipolarResidualsPassGradientChecker) {
     const Point p = MakePoint(i);
     Random random = Random::Stream(136, i);
     for (const Form& form : kForms) {
-      MotionParameterization chart;
-      ASSERT_TRUE(chart.Set(form.rotation, form.translation, p.start.pose, p.start.alignment,
-                            p.start.reference));
+      const MotionParameterization chart = MakeChart(form, p.start);
       const Parameters x = RandomParameters(form, i, false, &random);
       for (const Match& m : {p.matches[i % 3 * 4], p.matches[1 + i % 3]}) {
         const GroupedMatches matches(p.rig, {m});
@@ -165,9 +163,7 @@ TEST(Jacobian, PriorResidualsPassGradientChecker) {
             form.translation == TranslationForm::kCircle) {
           continue;
         }
-        MotionParameterization chart;
-        ASSERT_TRUE(chart.Set(form.rotation, form.translation, p.start.pose, p.start.alignment,
-                              p.start.reference));
+        const MotionParameterization chart = MakeChart(form, p.start);
         const Parameters x = RandomParameters(form, i, false, &random);
         EXPECT_TRUE(Probe(PriorOnChart(chart, residuals), {x.data()}, &random))
             << "kind " << static_cast<int>(kind) << ", " << At(form, i);
@@ -181,9 +177,7 @@ TEST(Jacobian, ReprojectionCostPassesGradientChecker) {
     const Point p = MakePoint(i);
     Random random = Random::Stream(138, i);
     for (const Form& form : kForms) {
-      MotionParameterization chart;
-      ASSERT_TRUE(chart.Set(form.rotation, form.translation, p.start.pose, p.start.alignment,
-                            p.start.reference));
+      const MotionParameterization chart = MakeChart(form, p.start);
       const Parameters x = RandomParameters(form, i, false, &random);
       const Motion<double> motion = ChartTwin(form, p.start)(x.data());
       for (const Match& m : {p.matches[i % 3 * 4], p.matches[1 + i % 3]}) {

@@ -18,9 +18,7 @@ TEST(Jacobian, ChartMatchesAutomaticDifferentiation) {
     const Point p = MakePoint(i);
     Random random = Random::Stream(132, i);
     for (const Form& form : kForms) {
-      MotionParameterization chart;
-      ASSERT_TRUE(chart.Set(form.rotation, form.translation, p.start.pose, p.start.alignment,
-                            p.start.reference));
+      const MotionParameterization chart = MakeChart(form, p.start);
       ASSERT_EQ(chart.size(), form.size) << form.name;
       const Parameters x = RandomParameters(form, i, true, &random);
       CompareChart(chart, form, p.start, x, i, &values, &derivatives);
@@ -85,9 +83,7 @@ TEST(Jacobian, EpipolarResidualsMatchAutomaticDifferentiation) {
     const GroupedMatches matches(p.rig, p.matches);
     Random random = Random::Stream(133, i);
     for (const Form& form : kForms) {
-      MotionParameterization chart;
-      ASSERT_TRUE(chart.Set(form.rotation, form.translation, p.start.pose, p.start.alignment,
-                            p.start.reference));
+      const MotionParameterization chart = MakeChart(form, p.start);
       const Parameters x = RandomParameters(form, i, true, &random);
       Pose pose;
       MotionBasis basis;
@@ -166,9 +162,7 @@ TEST(Jacobian, ReprojectionCostMatchesAutomaticDifferentiation) {
     const Point p = MakePoint(i);
     Random random = Random::Stream(135, i);
     for (const Form& form : kForms) {
-      MotionParameterization chart;
-      ASSERT_TRUE(chart.Set(form.rotation, form.translation, p.start.pose, p.start.alignment,
-                            p.start.reference));
+      const MotionParameterization chart = MakeChart(form, p.start);
       const Parameters x = RandomParameters(form, i, true, &random);
       const ChartTwin chart_twin(form, p.start);
       for (const Match& m : p.matches) {

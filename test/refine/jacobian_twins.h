@@ -91,6 +91,13 @@ struct Start {
   RayPair reference;
 };
 
+inline MotionParameterization MakeChart(const Form& form, const Start& start) {
+  MotionParameterization chart;
+  EXPECT_TRUE(
+      chart.Set(form.rotation, form.translation, start.pose, start.alignment, start.reference));
+  return chart;
+}
+
 // motion_parameterization.h in other formulas: rotations of t in place of cosines and tangents,
 // distances from the cameras in place of depths from the feet.
 class ChartTwin {
