@@ -41,13 +41,16 @@ std::string PlainValue(const gflags::CommandLineFlagInfo& flag, const std::strin
   return plain.empty() ? value : plain;  // empty: not finite
 }
 
-// Flags of gflags, glog and other libraries are not the program's.
+// Flags of gflags, glog and other libraries are not the program's: those that a file of this folder
+// defines are, whether the compiler was given its path from the root or, by a compiler cache, from
+// the build directory.
 std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
   std::vector<gflags::CommandLineFlagInfo> all;
   gflags::GetAllFlags(&all);
   std::vector<gflags::CommandLineFlagInfo> own;
   for (const auto& flag : all) {
-    if (flag.filename.find(RIGEL_TOOLS_FOLDER) != std::string::npos) own.push_back(flag);
+    const std::filesystem::path folder = std::filesystem::path(flag.filename).parent_path();
+    if (folder.filename() == RIGEL_TOOLS_FOLDER) own.push_back(flag);
   }
   std::sort(own.begin(), own.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return own;
