@@ -1,6 +1,9 @@
 #include "rigel/problems/experiment_report.h"
 
 #include <algorithm>
+#include <cinttypes>
+#include <cstdint>
+#include <cstdio>
 #include <exception>
 #include <functional>
 
@@ -8,6 +11,7 @@
 
 #include "rigel/problems/csv.h"
 #include "rigel/problems/json_message.h"
+#include "rigel/problems/json_text.h"
 #include "rigel/problems/summary_json.h"
 #include "rigel/problems/table.h"
 
@@ -220,7 +224,7 @@ std::string ExperimentJson(const ExperimentPlan& plan, const std::vector<Experim
 
 bool ParseExperimentJson(const std::string& text, StoredExperiment* stored, std::string* error) {
   try {
-    const Json json = Json::parse(text);
+    const Json json = ParseJson(text);
     if (json.at("format") != "rigel-experiment 1") {
       *error = "its format is not rigel-experiment 1";
       return false;
@@ -250,7 +254,7 @@ bool ParseExperimentJson(const std::string& text, StoredExperiment* stored, std:
     *stored = std::move(parsed);
     return true;
   } catch (const std::exception& e) {
-    *error = e.what();
+    *error = JsonMessage(e);
     return false;
   }
 }
@@ -280,8 +284,11 @@ std::string ExperimentCsv(const ExperimentPlan& plan, const std::vector<Experime
   return text;
 }
 
-std::string PointLine(const ExperimentPoint& point, const std::vector<ExperimentRow>& rows) {
-  Json json = PointJson(point);
+std::string PointLine(const ExperimentPoint& point, const std::vector<ExperimentRow>& rows,
+                      const std::string& run) {
+  Json json;
+  if (!run.empty()) json["run"] = run;
+  json.update(PointJson(point));
   if (!point.sequence.empty()) json["sequence"] = point.sequence;
   json["rows"] = Json::array();
   for (const ExperimentRow& row : rows) {
@@ -293,10 +300,12 @@ std::string PointLine(const ExperimentPoint& point, const std::vector<Experiment
 }
 
 bool ParsePointLine(const std::string& line, ExperimentPoint* point,
-                    std::vector<ExperimentRow>* rows, std::string* error) {
+                    std::vector<ExperimentRow>* rows, std::string* run, std::string* error) {
   try {
-    const Json json = Json::parse(line);
+    const Json json = ParseJson(line);
     ExperimentPoint parsed;
+    std::string parsed_run;
+    if (json.contains("run")) parsed_run = json.at("run").get<std::string>();
     parsed.motion = json.at("motion").get<std::string>();
     if (json.contains("sequence")) parsed.sequence = json.at("sequence").get<std::string>();
     if (json.contains("x")) parsed.x = json.at("x").get<double>();
@@ -306,6 +315,7 @@ bool ParsePointLine(const std::string& line, ExperimentPoint* point,
     }
     *point = parsed;
     *rows = std::move(parsed_rows);
+    *run = parsed_run;
     return true;
   } catch (const std::exception& e) {
     *error = JsonMessage(e);
@@ -317,12 +327,32 @@ bool ParsePointLine(const std::string& line, ExperimentPoint* point,
   }
 }
 
-std::string PlanLine(const ExperimentPlan& plan) {
+std::string RunId(const ExperimentPlan& plan) {
+  uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
+  const auto add = [&](const std::string& text) {
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  };
+  add(PlanLine(plan, ""));
+  for (const ExperimentPoint& point : plan.points) add(PointLine(point, {}, ""));
+  for (const DrivenMotion& motion : plan.driven) {
+    add(motion.sequence);
+    for (const Pose* pose : {&motion.world_from_body1, &motion.world_from_body2}) {
+      for (const double v : pose->R.reshaped()) add(" " + CsvNumber(v));
+      for (const double v : pose->t) add(" " + CsvNumber(v));
+    }
+  }
+  char text[17];
+  std::snprintf(text, sizeof(text), "%016" PRIx64, hash);
+  return text;
+}
+
+std::string PlanLine(const ExperimentPlan& plan, const std::string& run) {
   Json json;
   json["format"] = "rigel-experiment-points 1";
   json["experiment"] = plan.spec->name;
   json["options"] = OptionsJson(plan);
   json["solvers"] = plan.spec->solvers;
+  if (!run.empty()) json["run"] = run;
   return json.dump() + "\n";
 }
 

@@ -31,6 +31,7 @@ bool Append(const std::string& path, const std::string& text, std::string* error
 bool ExperimentStore::Open(const std::string& path, const ExperimentPlan& plan, bool resume,
                            std::string* error) {
   path_ = path;
+  run_ = RunId(plan);
   points_.clear();
   rows_.clear();
   std::error_code code;
@@ -39,7 +40,7 @@ bool ExperimentStore::Open(const std::string& path, const ExperimentPlan& plan, 
     *error = PrintablePath(path) + ": cannot be read: " + code.message();
     return false;
   }
-  if (!resume || !there) return WriteWholeFile(path, PlanLine(plan), error);
+  if (!resume || !there) return WriteWholeFile(path, PlanLine(plan, run_), error);
   std::ifstream file(path, std::ios::binary);
   std::ostringstream stream;
   stream << file.rdbuf();
@@ -50,7 +51,7 @@ bool ExperimentStore::Open(const std::string& path, const ExperimentPlan& plan, 
   const std::string text = stream.str();
   const size_t end = text.rfind('\n');
   const std::string whole = end == std::string::npos ? "" : text.substr(0, end + 1);
-  if (whole.empty()) return WriteWholeFile(path, PlanLine(plan), error);
+  if (whole.empty()) return WriteWholeFile(path, PlanLine(plan, run_), error);
   if (!Read(plan, whole, error)) return false;
   return whole.size() == text.size() || WriteWholeFile(path, whole, error);
 }
@@ -60,8 +61,10 @@ bool ExperimentStore::Read(const ExperimentPlan& plan, const std::string& text,
   std::istringstream lines(text);
   std::string line;
   std::getline(lines, line);
-  if (line + "\n" != PlanLine(plan)) {
-    const std::string wanted = PlanLine(plan);
+  const std::string wanted = PlanLine(plan, run_);
+  if (line + "\n" == PlanLine(plan, "")) {
+    run_.clear();  // of version 0.1
+  } else if (line + "\n" != wanted) {
     *error = PrintablePath(path_) +
              ":1: of another run; resume it with its own flags or name another directory\n" +
              "  there: " + line.substr(0, 400) +
@@ -71,9 +74,11 @@ bool ExperimentStore::Read(const ExperimentPlan& plan, const std::string& text,
   for (int number = 2; std::getline(lines, line); ++number) {
     ExperimentPoint point;
     std::vector<ExperimentRow> rows;
-    std::string what;
-    if (ParsePointLine(line, &point, &rows, &what)) {
-      if (std::find(plan.points.begin(), plan.points.end(), point) == plan.points.end()) {
+    std::string run, what;
+    if (ParsePointLine(line, &point, &rows, &run, &what)) {
+      if (run != run_) {
+        what = "it is of another run";
+      } else if (std::find(plan.points.begin(), plan.points.end(), point) == plan.points.end()) {
         what = "there is no such point in " + std::string(plan.spec->name);
       } else if (Has(point)) {
         what = "the point is there twice";
@@ -99,7 +104,7 @@ bool ExperimentStore::Has(const ExperimentPoint& point) const {
 
 bool ExperimentStore::Add(const ExperimentPoint& point, const std::vector<ExperimentRow>& rows,
                           std::string* error) {
-  if (!Append(path_, PointLine(point, rows), error)) return false;
+  if (!Append(path_, PointLine(point, rows, run_), error)) return false;
   points_.push_back(point);
   rows_.insert(rows_.end(), rows.begin(), rows.end());
   return true;

@@ -1,7 +1,7 @@
 // Finished points of an experiment in a file, so that an interrupted run loses nothing.
 //
-// One line of JSON says which run it is, each further one holds a finished point. A line that an
-// interruption cut short is dropped.
+// One line of JSON says which run it is, each further one holds a finished point and the id of the
+// run. A line that an interruption cut short is dropped.
 #ifndef RIGEL_PROBLEMS_EXPERIMENT_STORE_H_
 #define RIGEL_PROBLEMS_EXPERIMENT_STORE_H_
 
@@ -32,6 +32,7 @@ class ExperimentStore {
   bool Read(const ExperimentPlan& plan, const std::string& text, std::string* error);
 
   std::string path_;
+  std::string run_;  // RunId(), empty in a file of version 0.1
   std::vector<ExperimentPoint> points_;
   std::vector<ExperimentRow> rows_;
 };

@@ -3,7 +3,12 @@
 namespace rigel {
 
 std::string JsonMessage(const std::exception& exception) {
-  const std::string message = exception.what();
+  std::string message = exception.what();
+  // It quotes what it last read, be it a string of megabytes.
+  constexpr size_t kMaxHalf = 150;
+  if (message.size() > 2 * kMaxHalf) {
+    message.replace(kMaxHalf, message.size() - 2 * kMaxHalf, "...");
+  }
   const std::string prefix = "[json.exception.";
   const size_t end = message.find("] ");
   if (message.compare(0, prefix.size(), prefix) != 0 || end == std::string::npos) return message;

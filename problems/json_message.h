@@ -7,7 +7,7 @@
 
 namespace rigel {
 
-// The message without "[json.exception.NAME.NUMBER] ".
+// The message without "[json.exception.NAME.NUMBER] ", shortened in the middle if it is long.
 std::string JsonMessage(const std::exception& exception);
 
 }  // namespace rigel

@@ -11,6 +11,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/json_message.h"
+#include "rigel/problems/json_text.h"
 #include "rigel/problems/match_file.h"
 
 namespace rigel {
@@ -38,10 +39,10 @@ double ExactRadians(double degrees) {
 [[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
 
 int Integer(const Json& json, int min) {
-  if (!json.is_number_integer()) Fail("'" + json.dump() + "', expected an integer");
+  if (!json.is_number_integer()) Fail(QuoteJson(json) + ", expected an integer");
   const auto value = json.get<int64_t>();
   if (value < min || value > std::numeric_limits<int>::max()) {
-    Fail("'" + json.dump() + "', expected an integer from " + std::to_string(min));
+    Fail(QuoteJson(json) + ", expected an integer from " + std::to_string(min));
   }
   return static_cast<int>(value);
 }
@@ -95,7 +96,7 @@ bool HasSolver(const ComparisonReport& report, const std::string& name) {
 }
 
 ComparisonReport Report(std::string_view text) {
-  const Json json = Json::parse(text.begin(), text.end());
+  const Json json = ParseJson(text);
   if (json.at("format") != "rigel-report 1") Fail("its format is not 'rigel-report 1'");
   if (!json.contains("shard")) Fail("it is not the report of a shard: made without --shard=i/n");
   ComparisonReport report;

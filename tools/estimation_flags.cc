@@ -170,7 +170,8 @@ InputFiles ListInput() {
   input.paths = ListMatchFiles(FLAGS_matches, &errors);
   input.all_there = errors.empty();
   for (const std::string& error : errors) std::cerr << error << "\n";
-  input.total = static_cast<int>(input.paths.size());
+  input.all = input.paths;
+  input.total = static_cast<int>(input.all.size());
   if (input.total == 0) std::cerr << "nothing to read in " << PrintablePath(FLAGS_matches) << "\n";
   Shard shard;
   if (ParseShard(FLAGS_shard, &shard)) {

@@ -22,9 +22,10 @@ bool CanRefine(const EstimateOptions& estimate, const std::string& solver, std::
 // The files of --matches that are this run's, by --shard.
 struct InputFiles {
   std::vector<std::string> paths;
-  int first = 0;          // position of paths[0] among the files of all shards
-  int total = 0;          // files of all shards
-  bool all_there = true;  // false: something was not, which was told on stderr
+  std::vector<std::string> all;  // those of all shards
+  int first = 0;                 // position of paths[0] among the files of all shards
+  int total = 0;                 // files of all shards
+  bool all_there = true;         // false: something was not, which was told on stderr
   std::optional<Shard> shard;
 };
 

@@ -1,10 +1,11 @@
 #include "rigel/tools/plot_script.h"
 
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -16,6 +17,8 @@ namespace {
 
 // What the script exits with where matplotlib is missing.
 constexpr int kNoMatplotlib = 3;
+// As a shell has it.
+constexpr int kNoPython = 127;
 
 std::string ScriptPath() {
   std::error_code code;
@@ -46,10 +49,19 @@ PlotOutcome RunPlotScript(const std::vector<std::string>& arguments, std::string
   argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  pid_t child = 0;
-  const int failure = posix_spawnp(&child, "python3", nullptr, nullptr, argv.data(), environ);
-  if (failure != 0) {
-    *error = std::string("no figures: python3 cannot be run: ") + std::strerror(failure);
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child == 0) {
+    // It ends with the program, even if that is killed: the next run draws the same files.
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(kNoPython);
+    std::signal(SIGPIPE, SIG_DFL);
+    std::signal(SIGXFSZ, SIG_DFL);
+    execvp("python3", argv.data());
+    _exit(kNoPython);
+  }
+  if (child < 0) {
+    *error = std::string("no figures: no process for python3: ") + std::strerror(errno);
     return PlotOutcome::kUnavailable;
   }
   int status = -1;  // no exit of the child, should waitpid() fail
@@ -58,6 +70,10 @@ PlotOutcome RunPlotScript(const std::vector<std::string>& arguments, std::string
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return PlotOutcome::kDone;
   if (WIFEXITED(status) && WEXITSTATUS(status) == kNoMatplotlib) {
     *error = "no figures: python3 has no matplotlib (Debian: apt install python3-matplotlib)";
+    return PlotOutcome::kUnavailable;
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kNoPython) {
+    *error = "no figures: python3 cannot be run";
     return PlotOutcome::kUnavailable;
   }
   *error = "no figures: " + PrintablePath(script) + " failed";

@@ -130,6 +130,12 @@ int RunRansac() {
   if (files) {
     options.experiment = RansacExperiment::kFiles;
     std::vector<FramePair> pairs;
+    std::vector<std::string> ignored;  // told when they are read
+    std::string error;
+    if (!OutputsAreNoInputs({{"json", FLAGS_json}}, ListMatchFiles(FLAGS_matches, &ignored),
+                            &error)) {
+      return UsageError(error);
+    }
     ok = ReadPairs(prior, &pairs);
     if (pairs.empty()) return kExitFailed;
     rows = BenchmarkRansacOnFiles(options, pairs);
@@ -137,7 +143,7 @@ int RunRansac() {
     Progress progress("rigel_benchmark", CountRansacRows(options));
     rows = BenchmarkRansac(options, [&] { progress.Step(); });
   }
-  if (FLAGS_json != "-") {
+  if (!IsStdout(FLAGS_json)) {
     std::cout << RansacBenchmarkTable(rows, options.experiment);
     ok = FlushStdout() && ok;
   }
@@ -157,7 +163,7 @@ int RunRefinement() {
     return kExitFailed;
   }
   bool ok = true;
-  if (FLAGS_json != "-") {
+  if (!IsStdout(FLAGS_json)) {
     std::cout << RefineBenchmarkTable(rows)
               << "\nmedian over the problems of the least of five repetitions; "
               << options.num_matches << " matches, 0.5 px, start 1 deg off\n";
@@ -168,6 +174,8 @@ int RunRefinement() {
 }
 
 int Run() {
+  std::string error;
+  if (!OutputsDiffer({{"json", FLAGS_json}}, &error)) return UsageError(error);
   if (!FirstGiven({"ransac"}).empty()) {
     const std::string flag =
         FirstGiven({"num_cameras", "random_axis", "refine", "rotation_deg", "trials"});
@@ -232,7 +240,7 @@ int Run() {
   }
   if (rows.empty()) return kExitFailed;
   const double reference = ReferenceKernelMicroseconds();
-  if (FLAGS_json != "-") {
+  if (!IsStdout(FLAGS_json)) {
     std::cout << SolverBenchmarkTable(rows)
               << "\nreference kernel (4x4 LU solve by Eigen): " << FormatNumber(reference, 4)
               << " us, for each ratio anew;\npreparing a match: "
@@ -249,6 +257,5 @@ int Run() {
 }  // namespace rigel
 
 int main(int argc, char** argv) {
-  rigel::ParseFlags(rigel::kUsage, &argc, &argv);
-  return rigel::Run();
+  return rigel::RunProgram(argc, argv, rigel::kUsage, &rigel::Run);
 }

@@ -13,6 +13,7 @@
 #include "rigel/problems/calibration_report.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/match_header.h"
+#include "rigel/problems/table.h"
 #include "rigel/problems/whole_file.h"
 #include "rigel/refine/solver_choice.h"
 #include "rigel/tools/estimation_flags.h"
@@ -45,8 +46,11 @@ constexpr char kUsage[] =
     "and left as it was: a drive straight ahead says nothing of the plane's roll, and without\n"
     "turns nothing of the IMU's mounting. Files are replaced whole, all new ones written before "
     "the\n"
-    "first takes its place, their other lines and comments untouched. A comment line tells the\n"
-    "calibrated ones; input of which only a part is calibrated is refused.\n";
+    "first takes its place, their other lines and comments untouched; what a killed run had not "
+    "put\n"
+    "in its place is finished by the next. A comment line tells the calibrated ones; input of "
+    "which\n"
+    "only a part is calibrated is refused.\n";
 
 struct Lines {
   bool normal = false;
@@ -98,6 +102,36 @@ bool SameMarks(const std::vector<std::string>& paths, const std::string& line, s
   *error = "--lines=" + line + ": " + what + " (line '" + CalibrationMark(line) +
            "'), as an interrupted run leaves them; begin again with the files as they were before";
   return false;
+}
+
+// All marks of calibrations in a file.
+std::string Marks(const std::string& path) {
+  std::string marks;
+  for (const char* line : {"normal", "axis", "gravity"}) {
+    marks += FindHeaderComment(path, CalibrationMark(line)) + "\n";
+  }
+  return marks;
+}
+
+// A run with --in_place that was killed while its files took their places had written all of them:
+// those that did not get there yet do it now.
+void FinishInterruptedRun(const std::vector<std::string>& paths) {
+  std::set<std::string> in_place;
+  for (const std::string& path : paths) in_place.insert(Marks(path));
+  int finished = 0;
+  for (const std::string& path : paths) {
+    const bool done = FinishLeftOver(path, [&](const std::string& temporary) {
+      const std::string marks = Marks(temporary);
+      FramePair pair;
+      std::string ignored;
+      return marks != Marks(path) && in_place.count(marks) > 0 &&
+             ReadMatchFile(temporary, &pair, &ignored);
+    });
+    finished += done ? 1 : 0;
+  }
+  if (finished == 0) return;
+  std::cerr << "an interrupted run is finished: " << finished << " of " << paths.size()
+            << " files take their places\n";
 }
 
 // Match files in --output that this run does not overwrite, or that are not the program's own
@@ -175,6 +209,19 @@ Eigen::Vector3d Start(const std::vector<FramePair>& pairs) {
   return *pairs.front().prior.normal;
 }
 
+// Whether all files have these marks already and the calibration turns nothing: after a run that
+// was killed at its end, too.
+bool AlreadyCalibrated(const std::map<std::string, std::string>& marks,
+                       const std::vector<FramePair>& pairs) {
+  return std::all_of(marks.begin(), marks.end(), [&](const auto& mark) {
+    const auto& [words, line] = mark;
+    return line == words + " turned by " + FormatNumber(0.0, 6) + " deg" &&
+           std::all_of(pairs.begin(), pairs.end(), [&words = words](const FramePair& pair) {
+             return !FindHeaderComment(pair.name, words).empty();
+           });
+  });
+}
+
 bool WriteFiles(const CalibrationReport& report, const Lines& lines,
                 const std::vector<FramePair>& pairs) {
   std::vector<std::string> paths;
@@ -191,9 +238,14 @@ bool WriteFiles(const CalibrationReport& report, const Lines& lines,
     std::cerr << PrintablePath(FLAGS_output) << ": cannot be made: " << code.message() << "\n";
     return false;
   }
+  const std::map<std::string, std::string> marks = MarkLines(report, lines.normal, lines.axis);
+  if (FLAGS_in_place && AlreadyCalibrated(marks, pairs)) {
+    std::cerr << "nothing is written: all " << pairs.size() << " files are calibrated so already\n";
+    return true;
+  }
   StagedFiles files;
   for (size_t k = 0; k < pairs.size(); ++k) {
-    std::map<std::string, std::string> changed = MarkLines(report, lines.normal, lines.axis);
+    std::map<std::string, std::string> changed = marks;
     if (report.plane) changed.merge(PlaneLines(*report.plane, lines.normal, lines.axis));
     if (report.gravity) changed.merge(GravityLines(*report.gravity, pairs[k].prior));
     std::string text;
@@ -244,8 +296,13 @@ int Run() {
   const bool writes = FLAGS_in_place || !FLAGS_output.empty();
 
   const InputFiles input = ListInput();
+  if (!OutputsDiffer({{"json", FLAGS_json}}, &error) ||
+      !OutputsAreNoInputs({{"json", FLAGS_json}}, input.all, &error)) {
+    return UsageError(error);
+  }
   if (input.total == 0) return kExitFailed;
   bool ok = input.all_there;
+  if (FLAGS_in_place) FinishInterruptedRun(input.paths);
   // What would be refused at the end is refused before the work.
   for (const std::string& line : Names(lines)) {
     if (SameMarks(input.paths, line, &error)) continue;
@@ -305,7 +362,7 @@ int Run() {
   report.options = FlagValues(output_flags);
 
   // stdout belongs to the machine if it asked for it.
-  if (FLAGS_json != "-") {
+  if (!IsStdout(FLAGS_json)) {
     std::cout << CalibrationText(report);
     ok = FlushStdout() && ok;
   }
@@ -330,6 +387,5 @@ int Run() {
 }  // namespace rigel
 
 int main(int argc, char** argv) {
-  rigel::ParseFlags(rigel::kUsage, &argc, &argv);
-  return rigel::Run();
+  return rigel::RunProgram(argc, argv, rigel::kUsage, &rigel::Run);
 }

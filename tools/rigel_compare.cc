@@ -55,6 +55,8 @@ constexpr char kUsage[] =
     "  rigel_compare --matches=DIR --shard=0/2 --json=0.json      (and 1/2 to 1.json)\n"
     "  rigel_compare --merge=0.json,1.json --json=whole.json\n";
 
+std::vector<OutputFlag> Outputs() { return {{"json", FLAGS_json}, {"csv", FLAGS_csv}}; }
+
 // Table, JSON and CSV.
 bool Write(ComparisonReport* report, bool by_sequence) {
   if (!TimesAreGiven()) {
@@ -72,7 +74,7 @@ bool Write(ComparisonReport* report, bool by_sequence) {
   }
   bool ok = true;
   // stdout belongs to the machine if it asked for it.
-  if (FLAGS_json != "-" && FLAGS_csv != "-") {
+  if (!IsStdout(FLAGS_json) && !IsStdout(FLAGS_csv)) {
     const std::string table = ComparisonTable(summaries);
     const bool bold = by_sequence && isatty(STDOUT_FILENO) != 0;
     std::cout << (bold ? BestInBold(table) : table);
@@ -95,8 +97,9 @@ int Merge() {
   }
   const std::vector<std::string> names = SplitCommas(FLAGS_merge);
   if (names.empty()) return UsageError("--merge=" + FLAGS_merge + ": names no report");
-  std::vector<ComparisonReport> shards(names.size());
   std::string error;
+  if (!OutputsAreNoInputs(Outputs(), names, &error)) return UsageError(error);
+  std::vector<ComparisonReport> shards(names.size());
   for (size_t k = 0; k < names.size(); ++k) {
     std::string text;
     if (!ReadInput(names[k], &text)) return kExitFailed;
@@ -118,7 +121,7 @@ int Merge() {
 
 int Run() {
   std::string error;
-  if (!OutputsDiffer({{"json", FLAGS_json}, {"csv", FLAGS_csv}}, &error)) return UsageError(error);
+  if (!OutputsDiffer(Outputs(), &error)) return UsageError(error);
   if (!FLAGS_merge.empty()) return Merge();
   ComparisonOptions options;
   if (!OptionsFromFlags(&options, &error)) return UsageError(error);
@@ -141,6 +144,7 @@ int Run() {
   }
 
   const InputFiles input = ListInput();
+  if (!OutputsAreNoInputs(Outputs(), input.all, &error)) return UsageError(error);
   if (input.total == 0) return kExitFailed;
   FileComparison comparison;
   {
@@ -181,6 +185,5 @@ int Run() {
 }  // namespace rigel
 
 int main(int argc, char** argv) {
-  rigel::ParseFlags(rigel::kUsage, &argc, &argv);
-  return rigel::Run();
+  return rigel::RunProgram(argc, argv, rigel::kUsage, &rigel::Run);
 }

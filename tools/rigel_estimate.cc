@@ -69,7 +69,7 @@ std::vector<OutputFlag> Outputs() {
 bool StdoutIsAskedFor() {
   const auto outputs = Outputs();
   return std::any_of(outputs.begin(), outputs.end(),
-                     [](const auto& output) { return output.second == "-"; });
+                     [](const auto& output) { return IsStdout(output.second); });
 }
 
 bool Chained() {
@@ -107,6 +107,25 @@ bool Chain(const std::vector<int>& positions, EstimateReport* report) {
   return false;
 }
 
+// The outputs with the names that several trajectories and their truths have.
+std::vector<OutputFlag> AllOutputs(const std::vector<Trajectory>& trajectories) {
+  std::vector<OutputFlag> all;
+  for (const OutputFlag& output : Outputs()) {
+    const auto& [flag, path] = output;
+    const bool trajectory = flag == "kitti_trajectory" || flag == "tum_trajectory";
+    if (!trajectory || path.empty() || IsStdout(path)) {
+      all.push_back(output);
+      continue;
+    }
+    for (size_t k = 0; k < trajectories.size(); ++k) {
+      all.emplace_back(flag, TrajectoryPath(path, k, trajectories.size(), false));
+      if (!FLAGS_truth_trajectory || trajectories[k].truth.empty()) continue;
+      all.emplace_back(flag, TrajectoryPath(path, k, trajectories.size(), true));
+    }
+  }
+  return all;
+}
+
 // Writes the trajectories of --kitti_trajectory or --tum_trajectory. False with a message on stderr
 // if that fails.
 bool WriteTrajectories(const std::vector<Trajectory>& trajectories, const std::string& flag,
@@ -116,7 +135,7 @@ bool WriteTrajectories(const std::vector<Trajectory>& trajectories, const std::s
     return flag == "tum_trajectory" ? FormatTumTrajectory(poses, trajectory.times)
                                     : FormatKittiTrajectory(poses);
   };
-  if (path == "-") {
+  if (IsStdout(path)) {
     if (trajectories.size() == 1) {
       return WriteOutput(path, format(trajectories[0].estimate, trajectories[0]));
     }
@@ -161,11 +180,13 @@ int Run() {
   if (FLAGS_truth_trajectory && FLAGS_kitti_trajectory.empty() && FLAGS_tum_trajectory.empty()) {
     return UsageError("--truth_trajectory: needs --kitti_trajectory or --tum_trajectory");
   }
-  if (FLAGS_truth_trajectory && (FLAGS_kitti_trajectory == "-" || FLAGS_tum_trajectory == "-")) {
+  if (FLAGS_truth_trajectory &&
+      (IsStdout(FLAGS_kitti_trajectory) || IsStdout(FLAGS_tum_trajectory))) {
     return UsageError("--truth_trajectory: stdout takes one trajectory; name a file");
   }
 
   const InputFiles input = ListInput();
+  if (!OutputsAreNoInputs(Outputs(), input.all, &error)) return UsageError(error);
   if (input.total == 0) return kExitFailed;
   bool ok = input.all_there;
   struct Estimated {
@@ -211,6 +232,11 @@ int Run() {
   report.refined = estimate.refine_motion;
   // An empty shard has nothing to chain, and nothing is wrong with it.
   if (Chained() && !report.pairs.empty()) ok = Chain(positions, &report) && ok;
+  if (report.trajectories &&
+      (!OutputsDiffer(AllOutputs(*report.trajectories), &error) ||
+       !OutputsAreNoInputs(AllOutputs(*report.trajectories), input.all, &error))) {
+    return UsageError(error);
+  }
   // stdout belongs to the machine if it asked for it.
   if (!StdoutIsAskedFor()) {
     std::cout << EstimateTable(report);
@@ -243,6 +269,5 @@ int Run() {
 }  // namespace rigel
 
 int main(int argc, char** argv) {
-  rigel::ParseFlags(rigel::kUsage, &argc, &argv);
-  return rigel::Run();
+  return rigel::RunProgram(argc, argv, rigel::kUsage, &rigel::Run);
 }

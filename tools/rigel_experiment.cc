@@ -1,7 +1,5 @@
 // rigel_experiment: the paper's experiments, and more, with tables, figures and verdicts.
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -17,6 +15,7 @@
 #include "rigel/problems/experiment_report.h"
 #include "rigel/problems/experiment_store.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/problems/run_lock.h"
 #include "rigel/problems/whole_file.h"
 #include "rigel/tools/plot_script.h"
 #include "rigel/tools/tool.h"
@@ -54,7 +53,8 @@ constexpr char kUsage[] =
     "then the refinement. Per experiment NAME the directory gets NAME.json, NAME.csv, NAME.txt\n"
     "(table) and figures/NAME*.png and .svg; and claims.md, claims.json: each claim of the paper\n"
     "with a verdict. NAME.points.jsonl keeps finished points: after an interruption the same\n"
-    "command with --resume continues. docs/experiments.md has sizes and times.\n";
+    "command with --resume continues. One run at a time works in a directory.\n"
+    "docs/experiments.md has sizes and times.\n";
 
 int PrintList() {
   for (const ExperimentSpec& spec : ExperimentCatalogue()) {
@@ -77,25 +77,42 @@ bool Failed(const std::string& message) {
 
 // False with a message on stderr if --html could not be written: better before a long run.
 bool HtmlWritable() {
-  if (FLAGS_html.empty()) return true;
-  std::error_code code;
-  const bool there = fs::exists(FLAGS_html, code);
-  std::FILE* file = std::fopen(FLAGS_html.c_str(), "ab");
-  if (file == nullptr) {
-    const std::string what = std::generic_category().message(errno);
-    return Failed("--html: " + PrintablePath(FLAGS_html) + ": cannot be written: " + what);
-  }
-  std::fclose(file);
-  if (!there) fs::remove(FLAGS_html, code);
-  return true;
+  std::string error;
+  return FLAGS_html.empty() || CanWriteWholeFile(FLAGS_html, &error) || Failed("--html: " + error);
 }
 
-// False with a message on stderr.
-bool PrepareOutput(const std::vector<ExperimentPlan>& plans) {
+// The one page is none of the other results and none of the recorded poses.
+bool HtmlHasAPlaceOfItsOwn(const std::vector<ExperimentPlan>& plans, const std::string& poses,
+                           std::string* error) {
+  std::vector<OutputFlag> outputs;
+  for (const char* name : {"claims.md", "claims.json"}) outputs.emplace_back("output", name);
+  for (const ExperimentPlan& plan : plans) {
+    for (const char* ending : {".json", ".csv", ".txt", ".points.jsonl"}) {
+      outputs.emplace_back("output", std::string(plan.spec->name) + ending);
+    }
+  }
+  for (auto& [flag, path] : outputs) path = OutputPath(path);
+  outputs.emplace_back("html", FLAGS_html);
+  std::vector<std::string> inputs;
+  std::error_code code;
+  fs::directory_iterator entry(poses, code);
+  for (; !poses.empty() && !code && entry != fs::directory_iterator(); entry.increment(code)) {
+    inputs.push_back(entry->path().string());
+  }
+  return OutputsDiffer(outputs, error) && OutputsAreNoInputs(outputs, inputs, error);
+}
+
+// False with a message on stderr. From then on no other run works in the directory.
+bool PrepareOutput(const std::vector<ExperimentPlan>& plans, RunLock* lock) {
   std::error_code code;
   fs::create_directories(FLAGS_output, code);
   if (code) {
     return Failed(PrintablePath(FLAGS_output) + ": cannot be made: " + code.message());
+  }
+  std::string error;
+  if (!lock->Take(OutputPath("rigel_experiment.lock"), &error)) return Failed(error);
+  for (const std::string& directory : {FLAGS_output, OutputPath("figures")}) {
+    RemoveLeftOvers(directory, [](const std::string&) { return true; });
   }
   for (const ExperimentPlan& plan : plans) {
     if (FLAGS_resume || FLAGS_overwrite || !fs::exists(StorePath(plan), code)) continue;
@@ -323,8 +340,12 @@ int Run() {
     }
     plans.push_back(std::move(plan));
   }
+  std::string error;
+  if (!HtmlHasAPlaceOfItsOwn(plans, options.poses, &error)) return UsageError(error);
+  RunLock lock;
   std::vector<ExperimentStore> stores;
-  if (!PrepareOutput(plans) || !HtmlWritable() || !RunPoints(plans, &stores)) return kExitFailed;
+  if (!PrepareOutput(plans, &lock) || !HtmlWritable() || !RunPoints(plans, &stores))
+    return kExitFailed;
   bool ok = WriteResults(plans, stores);
   ok = DrawFigures() && ok;
   return ok ? kExitDone : kExitFailed;
@@ -334,6 +355,5 @@ int Run() {
 }  // namespace rigel
 
 int main(int argc, char** argv) {
-  rigel::ParseFlags(rigel::kUsage, &argc, &argv);
-  return rigel::Run();
+  return rigel::RunProgram(argc, argv, rigel::kUsage, &rigel::Run);
 }

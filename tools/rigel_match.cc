@@ -138,6 +138,5 @@ int Run() {
 }  // namespace rigel
 
 int main(int argc, char** argv) {
-  rigel::ParseFlags(rigel::kUsage, &argc, &argv);
-  return rigel::Run();
+  return rigel::RunProgram(argc, argv, rigel::kUsage, &rigel::Run);
 }

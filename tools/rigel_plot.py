@@ -13,11 +13,15 @@ Exit code: 0 done, 1 failed, 2 wrong flag, 3 matplotlib is missing.
 """
 import argparse
 import base64
+import errno
+import fcntl
 import html
+import io
 import json
 import math
 import os
 import re
+import stat
 import sys
 import zlib
 
@@ -434,23 +438,79 @@ def plot_trajectory(estimate_path, truth_path, vertical):
     return [("trajectory", figure)]
 
 
+def open_temporary(place):
+    """A locked temporary file beside the place, and its path; what killed runs left is removed."""
+    names = [f"{place}.rigel-tmp{k}" for k in range(10)]
+    for name in names:
+        try:
+            with open(name, "rb") as file:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if os.path.samestat(os.fstat(file.fileno()), os.lstat(name)):
+                    os.unlink(name)
+        except OSError:  # not there, or of a living run
+            pass
+    for name in names:
+        try:
+            file = open(name, "xb")
+        except FileExistsError:
+            continue
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:  # a file system without locks, or about to be removed by another run
+            pass
+        return file, name
+    raise OSError(errno.EEXIST, "other runs are writing it")
+
+
+def write_whole(path, data):
+    """As the programs write (rigel/problems/whole_file.h): a regular file is replaced by a whole
+    one with its mode and owner, all else is written to."""
+    place = os.path.realpath(path)
+    status = os.stat(path) if os.path.exists(path) else None
+    if status and os.path.samestat(status, os.fstat(sys.stdout.fileno())):
+        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.flush()
+        return
+    if status and not stat.S_ISREG(status.st_mode):
+        with open(path, "wb") as file:
+            file.write(data)
+        return
+    if status and not os.access(place, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), path)
+    file, temporary = open_temporary(place)
+    try:
+        with file:
+            if status:
+                own = os.fstat(file.fileno())
+                if (own.st_uid, own.st_gid) != (status.st_uid, status.st_gid):
+                    os.fchown(file.fileno(), status.st_uid, status.st_gid)
+                os.fchmod(file.fileno(), stat.S_IMODE(status.st_mode))
+            file.write(data)
+            file.flush()
+            os.replace(temporary, place)
+    except BaseException:
+        if os.path.exists(temporary):
+            os.unlink(temporary)
+        raise
+
+
 def save(figure, directory, name, dpi):
     """Writes both files; returns their paths, the SVG's last."""
     paths = [os.path.join(directory, f"{name}.{kind}") for kind in ("png", "svg")]
-    figure.savefig(paths[0], dpi=dpi, metadata={"Software": None})
-    figure.savefig(paths[1], metadata={"Date": None, "Creator": "rigel_plot.py"})
+    png, small, svg = io.BytesIO(), io.BytesIO(), io.StringIO()
+    figure.savefig(png, format="png", dpi=dpi, metadata={"Software": None})
+    figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": "rigel_plot.py"})
     plt.close(figure)
     # 128 colours are enough for lines and letters; a third of the size.
-    with Image.open(paths[0]) as image:
-        image.convert("RGB").quantize(128).save(paths[0], optimize=True)
-    with open(paths[1], encoding="utf-8") as file:
-        text = file.read()
+    with Image.open(png) as image:
+        image.convert("RGB").quantize(128).save(small, format="png", optimize=True)
+    text = svg.getvalue()
     # A hundredth of a point is fine enough; half the size.
     text = re.sub(r"(\d\.\d\d)\d+", r"\1", text)
     text = re.sub(r"(<use [^>]*); stroke-linejoin: miter", r"\1", text)
     text = re.sub(r"\n +", "\n", text)
-    with open(paths[1], "w", encoding="utf-8") as file:
-        file.write(text)
+    write_whole(paths[0], small.getvalue())
+    write_whole(paths[1], text.encode("utf-8"))
     return paths
 
 
@@ -526,8 +586,7 @@ def claims_html(report):
 def write_html(path, sections):
     text = PAGE.format(body="\n".join(sections))
     try:
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(text)
+        write_whole(path, text.encode("utf-8"))
     except OSError as error:
         raise Bad(f"{path}: cannot be written: {error}") from error
 

@@ -1,20 +1,28 @@
 #include "rigel/tools/tool.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
+#include <exception>
+#include <fstream>
 #include <iostream>
-#include <system_error>
+#include <new>
+#include <sstream>
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
 #include "rigel/problems/csv.h"
+#include "rigel/problems/match_file.h"
+#include "rigel/problems/output_place.h"
+#include "rigel/problems/whole_file.h"
 #include "rigel/tools/version.h"
 
 // gflags leaves the process through this pointer, with code 1; it is not in a public header.
@@ -56,6 +64,60 @@ std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
   return own;
 }
 
+// The name of a flag as it is given, "--name=value"; empty if it is none.
+std::string FlagName(const std::string& argument) {
+  const size_t begin = argument.find_first_not_of('-');
+  if (begin == 0 || begin > 2 || begin == std::string::npos) return "";
+  return argument.substr(begin, std::min(argument.find('='), argument.size()) - begin);
+}
+
+// gflags reads the flag files that a flag file names, and those of an environment variable, until
+// the stack ends where they name each other. Of one file all is read that a user may want; a
+// message if there is more to it.
+std::string FlagFileError(const std::string& path) {
+  constexpr size_t kMaxBytes = 1 << 20;
+  const std::string flag = "--flagfile=" + PrintablePath(path) + ": ";
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return flag + "cannot be opened: " + std::strerror(errno);
+  std::string text(kMaxBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) return flag + "cannot be read";
+  if (file) return flag + "larger than 1 MiB, expected flags, one a line";
+  text.resize(static_cast<size_t>(file.gcount()));
+  std::istringstream lines(text);
+  int number = 1;
+  for (std::string line; std::getline(lines, line); ++number) {
+    line.erase(0, std::min(line.find_first_not_of(" \t\r\v\f"), line.size()));
+    const std::string name = FlagName(line);
+    if (name == "flagfile" || name == "fromenv" || name == "tryfromenv") {
+      return flag + "line " + std::to_string(number) + ": --" + name +
+             " is not taken from a flag file, only from the command line";
+    }
+  }
+  return "";
+}
+
+// A message if a flag file is named that is not to be read.
+std::string FlagFilesError(int argc, char** argv) {
+  for (int k = 1; k < argc && std::strcmp(argv[k], "--") != 0; ++k) {
+    const std::string argument = argv[k];
+    const std::string name = FlagName(argument);
+    if (name != "flagfile" && name != "fromenv" && name != "tryfromenv") continue;
+    const size_t equals = argument.find('=');
+    const bool next = equals == std::string::npos;
+    if (next && k + 1 == argc) return "";  // no value: gflags tells it
+    for (const std::string& part : SplitCommas(next ? argv[k + 1] : argument.substr(equals + 1))) {
+      const std::string error =
+          name == "flagfile" ? FlagFileError(part)
+          : part == "flagfile"
+              ? "--" + name + "=flagfile: a flag file is only taken from the command line"
+              : "";
+      if (!error.empty()) return error;
+    }
+  }
+  return "";
+}
+
 void PrintHelp(const std::string& usage) {
   std::cout << usage << "\nFlags:\n";
   for (const auto& flag : OwnFlags()) {
@@ -88,6 +150,27 @@ void PrintHelp(const std::string& usage) {
 
 }  // namespace
 
+int RunProgram(int argc, char** argv, const std::string& usage, int (*run)()) {
+  // A write then fails, and that is told.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  // A file that is opened never gets the number of a closed stdin, stdout or stderr.
+  while (true) {
+    const int descriptor = open("/dev/null", O_RDONLY);
+    if (descriptor > STDERR_FILENO) close(descriptor);
+    if (descriptor < 0 || descriptor > STDERR_FILENO) break;
+  }
+  try {
+    ParseFlags(usage, &argc, &argv);
+    return run();
+  } catch (const std::bad_alloc&) {
+    std::cerr << ProgramName() << ": not enough memory\n";
+  } catch (const std::exception& exception) {
+    std::cerr << ProgramName() << ": " << PrintablePath(exception.what()) << "\n";
+  }
+  return kExitFailed;
+}
+
 void ParseFlags(const std::string& usage, int* argc, char*** argv) {
   // The user of a program wants its own messages, not the libraries' log lines.
   FLAGS_minloglevel = google::GLOG_FATAL;
@@ -109,6 +192,8 @@ void ParseFlags(const std::string& usage, int* argc, char*** argv) {
       std::exit(FlushStdout() ? kExitDone : kExitFailed);
     }
   }
+  const std::string flag_files = FlagFilesError(*argc, *argv);
+  if (!flag_files.empty()) std::exit(UsageError(flag_files));
   gflags::ParseCommandLineNonHelpFlags(argc, argv, true);
   if (*argc > 1) {
     std::exit(UsageError(std::string("unexpected argument '") + (*argv)[1] +
@@ -147,50 +232,73 @@ bool FlushStdout() {
   return false;
 }
 
+bool IsStdout(const std::string& path) {
+  return path == "-" || (!path.empty() && FollowLinks(path).descriptor == STDOUT_FILENO);
+}
+
 bool WriteOutput(const std::string& path, const std::string& text) {
   if (path.empty()) return true;
-  if (path == "-") {
+  if (IsStdout(path)) {
     std::cout << text;
     return FlushStdout();
   }
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (file == nullptr) {
-    std::cerr << path << ": cannot be opened for writing: " << std::strerror(errno) << "\n";
-    return false;
-  }
-  bool ok = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  // The disk may turn out to be full only here.
-  ok = std::fclose(file) == 0 && ok;
-  if (!ok) std::cerr << path << ": cannot be written: " << std::strerror(errno) << "\n";
-  return ok;
+  std::string error;
+  if (WriteWholeFile(path, text, &error)) return true;
+  std::cerr << error << "\n";
+  return false;
 }
 
 bool SameOutputFile(const std::string& path1, const std::string& path2) {
-  namespace fs = std::filesystem;
-  if (path1.empty() || path2.empty() || path1 == "-" || path2 == "-") return false;
-  std::error_code ignored;
-  if (fs::exists(path1, ignored) && !fs::is_regular_file(path1, ignored)) return false;
-  if (path1 == path2) return true;
-  const fs::path real1 = fs::weakly_canonical(fs::absolute(path1, ignored), ignored);
-  const fs::path real2 = fs::weakly_canonical(fs::absolute(path2, ignored), ignored);
-  return !real1.empty() && real1 == real2;
+  if (path1.empty() || path2.empty() || IsStdout(path1) || IsStdout(path2)) return false;
+  return SamePlace(FollowLinks(path1), FollowLinks(path2));
 }
 
 bool OutputsDiffer(const std::vector<OutputFlag>& outputs, std::string* error) {
+  OutputPlace out;
+  out.kind = OutputPlace::Kind::kDescriptor;
+  out.descriptor = STDOUT_FILENO;
+  const bool has_stdout = fstat(STDOUT_FILENO, &out.status) == 0;
   for (size_t k = 0; k < outputs.size(); ++k) {
     const auto& [flag, file] = outputs[k];
+    const std::string value = "--" + flag + "=" + file;
     for (size_t i = 0; i < k; ++i) {
       const auto& [first_flag, first_file] = outputs[i];
-      if (file == "-" && first_file == "-") {
-        *error = "--" + std::string(flag) + "=-: stdout has that of --" + first_flag +
+      if (IsStdout(file) && IsStdout(first_file)) {
+        *error = value + ": stdout has that of --" + first_flag +
                  " already; name a file for one of them";
         return false;
       }
       if (SameOutputFile(first_file, file)) {
-        *error = "--" + std::string(flag) + "=" + file + ": that of --" + first_flag +
+        *error = value + ": that of --" + first_flag +
                  " goes to this file already; name another for one of them";
         return false;
       }
+    }
+    if (has_stdout && !file.empty() && !IsStdout(file) && SamePlace(FollowLinks(file), out)) {
+      *error = value + ": stdout goes to this file already; name another";
+      return false;
+    }
+  }
+  return true;
+}
+
+bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
+                        const std::vector<std::string>& inputs, std::string* error) {
+  std::vector<std::pair<OutputFlag, struct stat>> files;
+  for (const OutputFlag& output : outputs) {
+    if (output.second.empty() || output.second == "-") continue;
+    const OutputPlace place = FollowLinks(output.second);
+    if (S_ISREG(place.status.st_mode)) files.emplace_back(output, place.status);
+  }
+  if (files.empty()) return true;
+  for (const std::string& input : inputs) {
+    struct stat status;
+    if ((input == "-" ? fstat(STDIN_FILENO, &status) : stat(input.c_str(), &status)) != 0) continue;
+    for (const auto& [output, of_output] : files) {
+      if (status.st_dev != of_output.st_dev || status.st_ino != of_output.st_ino) continue;
+      *error = "--" + output.first + "=" + output.second + ": is the input " +
+               PrintablePath(input == "-" ? "stdin" : input) + ", which it would destroy";
+      return false;
     }
   }
   return true;

@@ -16,9 +16,14 @@ inline constexpr int kExitDone = 0;
 inline constexpr int kExitFailed = 1;
 inline constexpr int kExitUsage = 2;
 
+// The whole of main(): parses the flags, runs the program and returns its exit code. What would end
+// the process otherwise ends in one line on stderr and kExitFailed: no memory left, an output to a
+// closed pipe or over the limit of file sizes.
+int RunProgram(int argc, char** argv, const std::string& usage, int (*run)());
+
 // Parses the flags. `usage` is the text above the list of flags in --help. Ends the program itself
-// on --help and --version (0) and on a flag that does not exist, a value that does not parse or an
-// argument that is not a flag (2).
+// on --help and --version (0) and on a flag that does not exist, a value that does not parse, an
+// argument that is not a flag or a flag file that names another (2).
 void ParseFlags(const std::string& usage, int* argc, char*** argv);
 
 // Prints the message and where to find help; returns kExitUsage.
@@ -35,8 +40,11 @@ std::vector<std::string> GivenFlags();
 // closed or full.
 bool FlushStdout();
 
-// Writes to a file, or to stdout if `path` is "-"; nothing if it is empty. False with a message on
-// stderr if that fails.
+// Whether an output goes to stdout: "-", /dev/stdout or a link to it.
+bool IsStdout(const std::string& path);
+
+// Writes to a file, whole or not at all (rigel/problems/whole_file.h), or to stdout; nothing if
+// `path` is empty. False with a message on stderr if that fails.
 bool WriteOutput(const std::string& path, const std::string& text);
 
 // Whether two outputs would be one file, which the second would overwrite. Stdout and devices are
@@ -48,6 +56,11 @@ using OutputFlag = std::pair<std::string, std::string>;
 
 // Each output has a file of its own, and one at most stdout. False with a message if not.
 bool OutputsDiffer(const std::vector<OutputFlag>& outputs, std::string* error);
+
+// No output is one of these input files, by any spelling or link; "-" is stdin. False with a
+// message if one is.
+bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
+                        const std::vector<std::string>& inputs, std::string* error);
 
 // Reads a whole file. False with a message on stderr if that fails.
 bool ReadInput(const std::string& path, std::string* text);

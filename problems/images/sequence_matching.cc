@@ -191,7 +191,6 @@ bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequenc
     return false;
   }
   std::set<std::string> own, there, others;
-  std::vector<fs::path> temporaries;
   for (const FrameIndices& indices : pairs) own.insert(indices.FileName());
   fs::directory_iterator entry(directory, code);
   for (; !code && entry != fs::directory_iterator(); entry.increment(code)) {
@@ -200,9 +199,6 @@ bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequenc
     if (entry->is_directory(ignored)) continue;
     if (EndsWith(name, kSuffix)) {
       (own.count(name) > 0 ? there : others).insert(name);
-    } else if (const std::string whole = name.substr(0, name.find(".tmp"));
-               whole != name && (own.count(whole) > 0 || whole == kSettingsName)) {
-      temporaries.push_back(entry->path());
     }
   }
   if (code) {
@@ -229,7 +225,9 @@ bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequenc
   } else if (!WriteWholeFile(settings.string(), text, error)) {
     return false;
   }
-  for (const fs::path& temporary : temporaries) fs::remove(temporary, code);
+  RemoveLeftOvers(directory, [](const std::string& name) {
+    return EndsWith(name, kSuffix) || name == kSettingsName;
+  });
   for (const std::string& name : there) {
     FramePair ignored;
     std::string broken;

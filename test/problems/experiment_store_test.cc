@@ -154,7 +154,41 @@ TEST_F(ExperimentStoreTest, SaysWhatIsWrongAndWhere) {
 TEST_F(ExperimentStoreTest, WithoutResumeItBeginsAnew) {
   Write(2);
   Write(0);
-  EXPECT_EQ(Read(path_), PlanLine(plan_));
+  EXPECT_EQ(Read(path_), PlanLine(plan_, RunId(plan_)));
+}
+
+TEST_F(ExperimentStoreTest, EachPointSaysOfWhichRunItIs) {
+  Write(2);
+  const std::string id = "\"run\":\"" + RunId(plan_) + "\"";
+  std::istringstream lines(Read(path_));
+  int count = 0;
+  for (std::string line; std::getline(lines, line); ++count) EXPECT_THAT(line, HasSubstr(id));
+  EXPECT_EQ(count, 3);
+  // A point that another run has put there.
+  std::string text = Read(path_);
+  text.replace(text.rfind(RunId(plan_)), 16, "0123456789abcdef");
+  std::ofstream(path_, std::ios::binary) << text;
+  EXPECT_THAT(OpenError(), HasSubstr(":3: no finished point: it is of another run"));
+
+  ExperimentPlan other = plan_;
+  EXPECT_EQ(RunId(other), RunId(plan_));
+  other.options.seed = 2;
+  EXPECT_NE(RunId(other), RunId(plan_));
+  other = plan_;
+  other.driven.push_back({"00", Pose(), Pose()});
+  EXPECT_NE(RunId(other), RunId(plan_));
+}
+
+TEST_F(ExperimentStoreTest, ARunOfVersion01IsContinued) {
+  std::ofstream(path_, std::ios::binary)
+      << PlanLine(plan_, "") << PointLine(plan_.points[0], Rows(plan_.points[0]), "");
+  ExperimentStore store;
+  std::string error;
+  ASSERT_TRUE(store.Open(path_, plan_, true, &error)) << error;
+  EXPECT_TRUE(store.Has(plan_.points[0]));
+  ASSERT_TRUE(store.Add(plan_.points[1], Rows(plan_.points[1]), &error)) << error;
+  ASSERT_TRUE(store.Open(path_, plan_, true, &error)) << error;
+  EXPECT_TRUE(store.Has(plan_.points[1]));
 }
 
 }  // namespace

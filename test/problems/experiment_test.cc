@@ -187,9 +187,9 @@ std::vector<ExperimentRow> RunPoint(const ExperimentPlan& plan, const Experiment
 TEST(Experiment, ResultsDoNotDependOnThreads) {
   ExperimentPlan plan = Plan("planar-image-noise", 6);
   const ExperimentPoint point{"random", "", 0.4};
-  const std::string one = PointLine(point, RunPoint(plan, point));
+  const std::string one = PointLine(point, RunPoint(plan, point), "");
   plan.options.num_threads = 4;
-  EXPECT_EQ(PointLine(point, RunPoint(plan, point)), one);
+  EXPECT_EQ(PointLine(point, RunPoint(plan, point), ""), one);
 }
 
 // Taking over the rows of a solver without prior must change nothing.
@@ -197,7 +197,8 @@ TEST(Experiment, SolversWithoutPriorDoNotSeeItsError) {
   const ExperimentPlan plan = Plan("roll-noise", 3);
   const ExperimentPoint exact{"forward", "", 0.0}, off{"forward", "", 1.0};
   const std::vector<ExperimentRow> first = RunPoint(plan, exact);
-  EXPECT_EQ(PointLine(off, RunPoint(plan, off, first)), PointLine(off, RunPoint(plan, off)));
+  EXPECT_EQ(PointLine(off, RunPoint(plan, off, first), ""),
+            PointLine(off, RunPoint(plan, off), ""));
   for (const ExperimentRow& row : first) {
     EXPECT_EQ(row.summary.pairs, 3);
     EXPECT_EQ(row.summary.failures, 0) << row.summary.solver;
@@ -226,17 +227,19 @@ TEST(ExperimentReport, PointsComeBackToTheLastBit) {
   std::vector<ExperimentRow> rows;
   std::string error;
   ASSERT_TRUE(RunExperimentPoint(plan, point, {}, {}, &rows, &error)) << error;
-  const std::string line = PointLine(point, rows);
+  const std::string line = PointLine(point, rows, "00ff");
   ExperimentPoint parsed_point;
   std::vector<ExperimentRow> parsed;
-  ASSERT_TRUE(ParsePointLine(line, &parsed_point, &parsed, &error)) << error;
+  std::string run;
+  ASSERT_TRUE(ParsePointLine(line, &parsed_point, &parsed, &run, &error)) << error;
   EXPECT_TRUE(parsed_point == point);
-  EXPECT_EQ(PointLine(parsed_point, parsed), line);
+  EXPECT_EQ(run, "00ff");
+  EXPECT_EQ(PointLine(parsed_point, parsed, run), line);
   EXPECT_EQ(ExperimentJson(plan, parsed), ExperimentJson(plan, rows));
   EXPECT_EQ(ExperimentCsv(plan, parsed), ExperimentCsv(plan, rows));
   EXPECT_TRUE(parsed.front().summary.raw_scale.has_value());
   for (const char* wrong : {"", "{}", "[1]", "{\"motion\": 3, \"rows\": []}", "{\"motion\""}) {
-    EXPECT_FALSE(ParsePointLine(wrong, &parsed_point, &parsed, &error)) << wrong;
+    EXPECT_FALSE(ParsePointLine(wrong, &parsed_point, &parsed, &run, &error)) << wrong;
     EXPECT_FALSE(error.empty());
   }
 }

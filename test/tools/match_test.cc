@@ -225,7 +225,7 @@ TEST_F(MatchTest, ResumeKeepsWhatIsCompleteAndDoesTheRest) {
   // which no run leaves, is made again as well.
   ASSERT_EXIT_CODE(Euroc("out"), 0);
   fs::remove(Path("out/000001-000002.matches"));
-  WriteText(Path("out/000001-000002.matches.tmp0"), "format rigma");
+  WriteText(Path("out/000001-000002.matches.rigel-tmp0"), "format rigma");
   WriteText(Path("out/000002-000003.matches"), "format rigmatch 1\n");
   const auto before = fs::last_write_time(Path("out/000000-000001.matches"));
 
