@@ -3,6 +3,7 @@
 #ifndef RIGEL_PROBLEMS_BATCH_H_
 #define RIGEL_PROBLEMS_BATCH_H_
 
+#include <exception>
 #include <functional>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "rigel/core/frame_pair.h"
 #include "rigel/problems/comparison.h"
+#include "rigel/problems/exception_message.h"
 #include "rigel/problems/parallel.h"
 
 namespace rigel {
@@ -24,7 +26,7 @@ bool LoadPair(const ComparisonOptions& options, const std::string& path, int pos
 template <class Result>
 struct BatchItem {
   int position = 0;   // among all of the input
-  std::string error;  // not empty: it could not be read, and there is nothing else
+  std::string error;  // not empty: it could not be read or worked on, and there is nothing else
   FramePair pair;     // without rig and matches
   Result result{};
 };
@@ -41,10 +43,16 @@ std::vector<BatchItem<Result>> RunBatch(const ComparisonOptions& options,
   ParallelFor(static_cast<int>(paths.size()), options.num_threads, [&](int k) {
     BatchItem<Result>& item = items[k];
     item.position = first + k;
-    if (LoadPair(options, paths[k], item.position, &item.pair, &item.error)) {
-      item.result = work(item.pair);
-      item.pair.rig = Rig();
-      item.pair.matches = std::vector<Match>();
+    // One file that there is no memory for is no reason to lose the others.
+    try {
+      if (LoadPair(options, paths[k], item.position, &item.pair, &item.error)) {
+        item.result = work(item.pair);
+        item.pair.rig = Rig();
+        item.pair.matches = std::vector<Match>();
+      }
+    } catch (const std::exception& exception) {
+      item.pair = FramePair();
+      item.error = paths[k] + ": " + ExceptionMessage(exception);
     }
     if (progress) progress();
   });

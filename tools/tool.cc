@@ -11,15 +11,16 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <new>
 #include <sstream>
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
 #include "rigel/problems/csv.h"
+#include "rigel/problems/exception_message.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/output_place.h"
 #include "rigel/problems/whole_file.h"
@@ -163,10 +164,8 @@ int RunProgram(int argc, char** argv, const std::string& usage, int (*run)()) {
   try {
     ParseFlags(usage, &argc, &argv);
     return run();
-  } catch (const std::bad_alloc&) {
-    std::cerr << ProgramName() << ": not enough memory\n";
   } catch (const std::exception& exception) {
-    std::cerr << ProgramName() << ": " << PrintablePath(exception.what()) << "\n";
+    std::cerr << ProgramName() << ": " << ExceptionMessage(exception) << "\n";
   }
   return kExitFailed;
 }

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "rigel/problems/csv.h"
+#include "rigel/problems/exception_message.h"
 #include "rigel/problems/images/text_lines.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/parallel.h"
@@ -328,7 +329,7 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
         }
       }
     } catch (const std::exception& exception) {
-      errors[k] = PrintablePath(path) + ": not written: " + PrintablePath(exception.what());
+      errors[k] = PrintablePath(path) + ": not written: " + ExceptionMessage(exception);
     }
     frames[indices.frame1].Release();
     frames[indices.frame2].Release();

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
+#include <new>
 #include <set>
 #include <thread>
 #include <vector>
@@ -36,6 +37,19 @@ TEST(ParallelFor, OneThreadRunsInOrderOnTheCallersOwn) {
     EXPECT_EQ(std::this_thread::get_id(), caller);
   });
   EXPECT_EQ(order, (std::vector<int>{0, 1, 2, 3, 4}));
+}
+
+TEST(ParallelFor, WhatAnItemThrowsIsThrownWhenAllThreadsHaveEnded) {
+  for (const int threads : {1, 4}) {
+    std::atomic<int> count{0};
+    EXPECT_THROW(ParallelFor(1000, threads,
+                             [&](int k) {
+                               if (k == 10) throw std::bad_alloc();
+                               ++count;
+                             }),
+                 std::bad_alloc);
+    EXPECT_LT(count, 1000);
+  }
 }
 
 // Items that wait for each other finish only if there are as many threads.

@@ -221,6 +221,39 @@ TEST_F(CalibratePriorTest, PartlyCalibratedFilesAreRefused) {
   EXPECT_THAT(Lines(two.err), ElementsAre(HasSubstr("calibrated by 2 different runs")));
 }
 
+// Killed while the files took their places: all were written, some under their temporary names.
+TEST_F(CalibratePriorTest, WhatAKilledRunHadWrittenIsFinished) {
+  namespace fs = std::filesystem;
+  const std::string matches = Misaligned("in");
+  fs::copy(matches, Path("before"));
+  const Args args = {"--matches=" + matches, "--in_place", "--lines=normal,gravity"};
+  ASSERT_EXIT_CODE(RunTool("calibrate_prior", args), 0);
+  fs::copy(matches, Path("whole"));
+  for (const char* name : {"/000007.matches", "/000021.matches", "/000029.matches"}) {
+    fs::rename(matches + name, matches + name + ".rigel-tmp0");
+    fs::copy(Path("before") + name, matches + name);
+  }
+  const Outcome run = RunTool("calibrate_prior", args);
+  EXPECT_EXIT_CODE(run, 0);
+  EXPECT_THAT(Lines(run.err),
+              ElementsAre("an interrupted run is finished: 3 of 30 files take their places",
+                          "nothing is written: all 30 files are calibrated so already"));
+  size_t files = 0;
+  for (const auto& entry : fs::directory_iterator(matches)) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_EQ(ReadText(entry.path().string()), ReadText(Path("whole/") + name)) << name;
+    ++files;
+  }
+  EXPECT_EQ(files, 30u);
+
+  // Killed before any was in its place: they are as if that run had never been.
+  WriteText(Path("before/000003.matches.rigel-tmp0"), ReadText(matches + "/000003.matches"));
+  const Args again = {"--matches=" + Path("before"), "--in_place", "--lines=normal,gravity"};
+  EXPECT_EXIT_CODE(RunTool("calibrate_prior", again), 0);
+  EXPECT_FALSE(fs::exists(Path("before/000003.matches.rigel-tmp0")));
+  EXPECT_EQ(ReadText(Path("before/000003.matches")), ReadText(matches + "/000003.matches"));
+}
+
 TEST_F(CalibratePriorTest, InPlaceOfABrokenFileWritesNone) {
   const std::string matches = Misaligned("in");
   WriteText(matches + "/000003.matches", "format rigmatch 1\nnormal 0 0\n");

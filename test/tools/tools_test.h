@@ -24,8 +24,18 @@ struct Outcome {
 
 enum class Stdout { kCaptured, kClosed, kFullDevice, kBrokenPipe };
 
+// What the system gives a program, as `ulimit` sets it; 0 is as the test has it.
+struct Limits {
+  size_t memory_bytes = 0;
+  size_t file_bytes = 0;
+  size_t processes = 0;  // threads are among them
+  // Root knows no limits of processes and no modes of files: the program runs as another user.
+  bool as_nobody = false;
+};
+
 // Runs "rigel_NAME" and waits for it. stdin is empty.
-Outcome RunTool(const std::string& name, const Args& args, Stdout to = Stdout::kCaptured);
+Outcome RunTool(const std::string& name, const Args& args, Stdout to = Stdout::kCaptured,
+                const Limits& limits = {});
 
 std::string ReadText(const std::string& path);
 void WriteText(const std::string& path, const std::string& text);

@@ -1,4 +1,6 @@
 #include <fcntl.h>
+#include <grp.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,6 +25,23 @@ void Redirect(const char* path, int flags, int to) {
   if (from != to) close(from);
 }
 
+void Limit(int resource, size_t value) {
+  const rlimit limit = {value, value};
+  if (value > 0 && setrlimit(resource, &limit) != 0) _exit(125);
+}
+
+// The user first: a limit that is exceeded already would stop the change.
+void SetLimits(const Limits& limits) {
+  constexpr int kNobody = 65534;
+  if (limits.as_nobody && geteuid() == 0 &&
+      (setgroups(0, nullptr) != 0 || setgid(kNobody) != 0 || setuid(kNobody) != 0)) {
+    _exit(125);
+  }
+  Limit(RLIMIT_AS, limits.memory_bytes);
+  Limit(RLIMIT_FSIZE, limits.file_bytes);
+  Limit(RLIMIT_NPROC, limits.processes);
+}
+
 void ExpectFinite(const Json& json, const std::string& where) {
   EXPECT_FALSE(json.is_null()) << where << " is null";
   if (json.is_number()) {
@@ -37,7 +56,7 @@ void ExpectFinite(const Json& json, const std::string& where) {
 
 }  // namespace
 
-Outcome RunTool(const std::string& name, const Args& args, Stdout to) {
+Outcome RunTool(const std::string& name, const Args& args, Stdout to, const Limits& limits) {
   Outcome run;
   const std::string program = std::string(RIGEL_PROGRAMS) + "/rigel_" + name;
   run.command = "rigel_" + name;
@@ -83,6 +102,7 @@ Outcome RunTool(const std::string& name, const Args& args, Stdout to) {
         break;
       }
     }
+    SetLimits(limits);
     execv(program.c_str(), argv.data());
     _exit(126);
   }
