@@ -7,6 +7,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/csv.h"
+#include "rigel/problems/report_json.h"
 #include "rigel/problems/table.h"
 
 namespace rigel {
@@ -89,8 +90,7 @@ std::string CalibrationText(const CalibrationReport& report) {
 }
 
 std::string CalibrationJson(const CalibrationReport& report) {
-  Json json;
-  json["format"] = "rigel-prior-calibration 1";
+  Json json = NewReport("rigel-prior-calibration 1");
   json["options"] = Json::object();
   for (const auto& [name, value] : report.options) json["options"][name] = value;
   json["pairs"] = report.pairs;
