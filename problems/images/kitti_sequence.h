@@ -18,7 +18,8 @@
 
 namespace rigel {
 
-// The frames are 0 to the highest number of an image; which of them are there is not checked.
+// Frames count to the highest number of an image, 10 million at most; there are those of which a
+// camera has an image.
 // False with a message that names the file, and the line where there is one.
 bool ReadKittiSequence(const std::string& root, const std::string& name, ImageSequence* sequence,
                        std::string* error);

@@ -119,6 +119,25 @@ TEST_F(KittiSequence, TimesAndPosesOfTheirLines) {
                                                    HasSubstr("06.txt: 2 lines for 4 frames")));
 }
 
+TEST_F(KittiSequence, NumbersThatAreLeftOutCostNothing) {
+  Write("sequences/06/image_1/9999999.png", "");
+  Write("sequences/06/image_1/10000000.png", "");
+  Write("sequences/06/times.txt", "0\n1\n2\n3\n4\n");
+  const ImageSequence sequence = Read();
+  EXPECT_EQ(sequence.frames.size(), 10000001u);
+  EXPECT_THAT(sequence.frames.numbers(), testing::ElementsAre(0, 1, 2, 3, 9999999, 10000000));
+  EXPECT_EQ(sequence.frames.Find(4), nullptr);
+  EXPECT_EQ(sequence.image_path(4, 1), root_ + "/sequences/06/image_1/000004.png");
+  EXPECT_EQ(sequence.frames[3].time, 3.0);
+  EXPECT_THAT(sequence.frames[9999999].images[0], testing::EndsWith("image_0/9999999.png"));
+  for (const char* image : {"2147483647.png", "10000001.png", "9999999999999.png"}) {
+    Write("sequences/06/image_1/" + std::string(image), "");
+    EXPECT_THAT(Error(),
+                HasSubstr(image + std::string(": expected an image number up to 10000000")));
+    Remove("sequences/06/image_1/" + std::string(image));
+  }
+}
+
 TEST_F(KittiSequence, WhatIsMissingIsNamed) {
   Remove("sequences/06/image_1");
   EXPECT_THAT(Error(), HasSubstr("expected image_0 and image_1 in it, or image_2 and image_3"));
