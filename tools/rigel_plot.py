@@ -467,7 +467,7 @@ def write_whole(path, data):
     one with its mode and owner, all else is written to."""
     place = os.path.realpath(path)
     status = os.stat(path) if os.path.exists(path) else None
-    if status and os.path.samestat(status, os.fstat(sys.stdout.fileno())):
+    if status and sys.stdout and os.path.samestat(status, os.fstat(sys.stdout.fileno())):
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()
         return

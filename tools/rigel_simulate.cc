@@ -15,6 +15,7 @@
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/parallel.h"
 #include "rigel/problems/synthetic.h"
+#include "rigel/problems/whole_file.h"
 #include "rigel/tools/tool.h"
 
 DEFINE_string(
@@ -189,6 +190,9 @@ int Run() {
            "empty the directory or name another\n";
     return kExitFailed;
   }
+  RemoveLeftOvers(FLAGS_output, [](const std::string& name) {
+    return std::filesystem::path(name).extension() == ".matches";
+  });
   error = WriteFiles(options, motions, num_pairs);
   if (!error.empty()) {
     std::cerr << error << "\n";

@@ -14,7 +14,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <sstream>
+#include <system_error>
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
@@ -304,18 +306,28 @@ bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
 }
 
 bool ReadInput(const std::string& path, std::string* text) {
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-  if (file == nullptr) {
-    std::cerr << path << ": cannot be opened: " << std::strerror(errno) << "\n";
+  constexpr size_t kMaxBytes = size_t{1} << 30;
+  const auto fail = [&](const std::string& what) {
+    std::cerr << PrintablePath(path) << ": " << what << "\n";
     return false;
-  }
+  };
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             &std::fclose);
+  if (file == nullptr) return fail(std::string("cannot be opened: ") + std::strerror(errno));
+  std::error_code no_size;
+  const uintmax_t size = std::filesystem::file_size(path, no_size);
+  bool too_long = !no_size && size > kMaxBytes;
   text->clear();
   char buffer[1 << 16];
-  for (size_t n; (n = std::fread(buffer, 1, sizeof(buffer), file)) > 0;) text->append(buffer, n);
-  const bool ok = std::ferror(file) == 0;
-  if (!ok) std::cerr << path << ": cannot be read: " << std::strerror(errno) << "\n";
-  std::fclose(file);
-  return ok;
+  for (size_t n; !too_long && (n = std::fread(buffer, 1, sizeof(buffer), file.get())) > 0;) {
+    // Not text, and perhaps without an end.
+    if (std::memchr(buffer, 0, n) != nullptr) return fail("a NUL byte, expected text");
+    text->append(buffer, n);
+    too_long = text->size() > kMaxBytes;
+  }
+  if (too_long) return fail("more than 1 GiB, expected no more");
+  if (std::ferror(file.get()) == 0) return true;
+  return fail(std::string("cannot be read: ") + std::strerror(errno));
 }
 
 std::vector<std::string> SplitCommas(const std::string& text) {

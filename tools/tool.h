@@ -62,7 +62,7 @@ bool OutputsDiffer(const std::vector<OutputFlag>& outputs, std::string* error);
 bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
                         const std::vector<std::string>& inputs, std::string* error);
 
-// Reads a whole file. False with a message on stderr if that fails.
+// Reads a whole file of at most 1 GiB. False with a message on stderr if that fails.
 bool ReadInput(const std::string& path, std::string* text);
 
 // Splits at commas; empty parts are dropped.
