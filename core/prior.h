@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "rigel/core/eigen_types.h"
+
 namespace rigel {
 
 // Each part is optional. Directions are unit vectors. A sigma is the standard deviation per
@@ -28,6 +30,7 @@ struct MotionPrior {
   std::optional<double> distance;
   double distance_sigma = 0.0;
 };
+static_assert(kSameLayoutEverywhere<MotionPrior>, "no member of MotionPrior may be aligned");
 
 // What a minimal solver needs to be known.
 enum class PriorKind {

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "rigel/core/eigen_types.h"
 #include "rigel/core/frame_pair.h"
 #include "rigel/refine/refine.h"
 
@@ -15,6 +16,7 @@ struct CramerRaoBound {
   double relative_scale = 0.0;  // of |t|, all else free; infinite if not determined
   Matrix6d covariance;
 };
+static_assert(kSameLayoutEverywhere<CramerRaoBound>, "no member of CramerRaoBound may be aligned");
 
 // sigma^2 (J'J)^-1 at the true motion over the parameters that `options.form` frees (for kFull, t
 // on the sphere where scale is not observable), J of the Sampson residuals of the inliers there

@@ -26,8 +26,7 @@
 #ifndef RIGEL_REFINE_BETWEEN_FACTOR_H_
 #define RIGEL_REFINE_BETWEEN_FACTOR_H_
 
-#include <Eigen/Core>
-
+#include "rigel/core/eigen_types.h"
 #include "rigel/core/pose.h"
 #include "rigel/refine/refine.h"
 #include "rigel/refine/uncertainty.h"
@@ -42,6 +41,7 @@ struct BetweenFactor {
   Matrix6d covariance = Matrix6d::Zero();
   Matrix6d information = Matrix6d::Zero();
 };
+static_assert(kSameLayoutEverywhere<BetweenFactor>, "no member of BetweenFactor may be aligned");
 
 // d(w, v) / d(d, e) and d(v, h) / d(d, e) at the motion. Never singular.
 Matrix6d GtsamJacobian(const Pose& f2_from_f1);

@@ -56,6 +56,7 @@ struct MotionEstimate {
     return status == EstimateStatus::kSuccess || status == EstimateStatus::kNotRefined;
   }
 };
+static_assert(kSameLayoutEverywhere<MotionEstimate>, "no member of MotionEstimate may be aligned");
 
 // Never throws, exits or logs on what `pair` or `options` hold. Thread-safe; the same input and
 // seed give the same result.

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "rigel/core/eigen_types.h"
 #include "rigel/core/match.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/prior.h"
@@ -129,6 +130,7 @@ struct RefineSummary {
   // One clause on what is and what is not observable, and by how much.
   std::string ObservabilityReport() const;
 };
+static_assert(kSameLayoutEverywhere<RefineSummary>, "no member of RefineSummary may be aligned");
 
 // Refines `pose`, which must be near the motion. Never throws, exits or logs; on kDegenerate and
 // kFailure `pose` is unchanged. Thread-safe; deterministic.

@@ -17,7 +17,6 @@ namespace rigel {
 
 namespace {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 // Of an information matrix with a unit diagonal: what rounding in pixels of some hundred makes of
 // zero stays below this.

@@ -10,14 +10,13 @@
 
 #include <Eigen/Core>
 
+#include "rigel/core/eigen_types.h"
 #include "rigel/core/pose.h"
 #include "rigel/minimal/alignment.h"
 #include "rigel/minimal/grouped_matches.h"
 #include "rigel/refine/motion_parameterization.h"
 
 namespace rigel {
-
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 // Scale is observable if the standard deviation of |t| is at most this fraction of |t|.
 inline constexpr double kScaleObservableRatio = 0.05;
