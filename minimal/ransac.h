@@ -62,7 +62,7 @@ struct RansacOptions {
   // The loop ends once its work, counted and not timed, so that the result is the same on every
   // machine, would have taken about so long on one core of 2020. At the defaults only
   // 6pt-stewenius, and rigs with thousands of camera pairs, come to that before max_iterations.
-  double max_work_us = 1e6;  // > 0; may be infinite
+  double max_work_us = 1.5e6;  // > 0; may be infinite
   uint64_t seed = 1;
 
   bool IsValid(std::string* error) const;

@@ -25,25 +25,6 @@
 namespace rigel {
 namespace {
 
-bool CanBeWeighed(const MotionPrior& prior, PriorKind kind, std::string* error) {
-  const auto positive = [](const std::optional<double>& sigma) {
-    return !sigma.has_value() || (*sigma > 0 && std::isfinite(*sigma));
-  };
-  if (!positive(prior.gravity_sigma) || !positive(prior.axis_sigma) ||
-      !positive(prior.normal_sigma) || !(prior.distance_sigma >= 0) ||
-      !std::isfinite(prior.distance_sigma)) {
-    *error = "a sigma of the prior is not positive and finite";
-    return false;
-  }
-  const double distance = prior.distance.value_or(0.0);
-  if (!(distance >= 0) || !std::isfinite(distance)) {
-    *error = "the prior's distance is negative or not finite";
-    return false;
-  }
-  Alignment alignment;
-  return !HasPrior(prior, kind) || MakeAlignment(prior, kind, &alignment, error);
-}
-
 class Refiner {
  public:
   Refiner(const RefineOptions& options, const GroupedMatches& matches, const MotionPrior& prior)
@@ -486,7 +467,7 @@ RefineSummary Refiner::Run(Pose* pose) {
     Fail(Termination::kFailure, "the start's R is not a rotation");
     return summary_;
   }
-  if (options_.use_prior && !CanBeWeighed(prior_, options_.prior_kind, &error)) {
+  if (options_.use_prior && !prior_.IsValid(&error)) {
     Fail(Termination::kFailure, error);
     return summary_;
   }
