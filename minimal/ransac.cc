@@ -37,6 +37,14 @@ bool RansacOptions::IsValid(std::string* error) const {
     *error = "num_finalists must lie in 0.." + std::to_string(kMaxFinalists);
     return false;
   }
+  if (max_scored < 1) {
+    *error = "max_scored must be at least 1";
+    return false;
+  }
+  if (!(max_work_us > 0)) {
+    *error = "max_work_us must be positive";
+    return false;
+  }
   return true;
 }
 

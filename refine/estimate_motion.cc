@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -25,8 +26,11 @@ class FramePairSolver {
                   const Alignment& alignment, const RansacOptions& options)
       : solver_(solver),
         matches_(matches),
+        scored_subset_(matches.size() > options.max_scored ? matches.DrawnSubset(options.max_scored)
+                                                           : GroupedMatches()),
+        scored_(scored_subset_.size() > 0 ? scored_subset_ : matches_),
         subset_(matches.EvenSubset(kSubset)),
-        drawn_subset_(matches.DrawnSubset(kSubset)),
+        drawn_subset_(scored_.DrawnSubset(kSubset)),
         sign_subset_(matches.EvenSubset(kSignSubset)),
         prepared_(PreparedMatches::OnDemand(matches, alignment)),
         sampler_(matches, solver.sampling, solver.sample_size, options.max_iterations,
@@ -44,7 +48,7 @@ class FramePairSolver {
     }
   }
 
-  int num_data() const { return matches_.size(); }
+  int num_data() const { return scored_.size(); }
   int sample_size() const { return solver_.sample_size; }
   bool Draw(Random* random, int* sample) const {
     for (int k = 0; k < kMaxRedraws; ++k) {
@@ -57,9 +61,15 @@ class FramePairSolver {
     prepared_.Prepare(sample, solver_.sample_size);
     return solver_.solve(prepared_, sample, solutions);
   }
+  double Work(int num_solutions) const {
+    constexpr double kSample = 1.0, kSolution = 0.3, kGroup = 0.05, kMatch = 0.0025;
+    return kSample + solver_.nominal_us +
+           num_solutions * (kSolution + kGroup * static_cast<double>(scored_.groups().size()) +
+                            kMatch * scored_.size());
+  }
   // Does not look at depths, which only add to the score; the sign of t matters little to it.
   double QuickScore(const Model& model, double bound) const {
-    return matches_.Score(model, threshold_px_, bound, nullptr, Loss());
+    return scored_.Score(model, threshold_px_, bound, nullptr, Loss());
   }
   // The sum over the subset is too far above its expectation for a score of `best`. Terms are
   // between 0 and t^2: of all sets of so many with this mean those of zeros and t^2 alone scatter
@@ -67,7 +77,7 @@ class FramePairSolver {
   bool BailsOut(const Model& model, double best) const {
     constexpr double kDeviations = 3.0;
     constexpr double kTerms = 2.0;
-    const double n = matches_.size(), m = drawn_subset_.size();
+    const double n = scored_.size(), m = drawn_subset_.size();
     if (n < 2.0 * m) return false;
     const double t2 = threshold_px_ * threshold_px_;
     const double p = std::min(best / (n * t2), 1.0);
@@ -76,7 +86,7 @@ class FramePairSolver {
     return drawn_subset_.Score(model, threshold_px_, limit, nullptr, Loss()) > limit;
   }
   double Score(const Model& model, double bound, int* inliers) const {
-    return matches_.ScoreInFront(model, threshold_px_, bound, inliers, Loss());
+    return scored_.ScoreInFront(model, threshold_px_, bound, inliers, Loss());
   }
 
   bool Admit(Model* model) const {
@@ -159,6 +169,8 @@ class FramePairSolver {
 
   const SolverInfo& solver_;
   const GroupedMatches& matches_;
+  GroupedMatches scored_subset_;  // empty if all are scored
+  const GroupedMatches& scored_;
   GroupedMatches subset_;
   GroupedMatches drawn_subset_;
   GroupedMatches sign_subset_;
@@ -215,10 +227,12 @@ bool EstimateOptions::IsValid(std::string* error) const {
   RefineOptions refined = refine;
   // "auto" may find a prior of any kind.
   refined.prior_kind = solver == kAutoSolver ? PriorKind::kVertical : FindSolver(solver)->prior;
-  return ransac.IsValid(error) && (!refine_motion || refined.IsValid(error));
+  return ransac.IsValid(error) && (!refine_motion || refined.IsValid(error)) &&
+         IsValidTimeLimit(time_limit, error);
 }
 
 MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& pair) {
+  Stop stop(options.time_limit, options.cancel);
   std::string error;
   if (!options.IsValid(&error) || !pair.IsValid(&error)) {
     return Refused(EstimateStatus::kInvalidInput, error);
@@ -263,7 +277,7 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
     }
     const FramePairSolver problem(*candidate, matches, alignment, options.ransac);
     Solutions solutions;
-    const RansacResult<Solution> result = Ransac(problem, options.ransac, &solutions);
+    const RansacResult<Solution> result = Ransac(problem, options.ransac, &solutions, &stop);
     estimate.iterations += result.iterations;
     estimate.hypotheses += result.hypotheses;
     if (solver == nullptr || (result.found && !(ransac.found && ransac.score <= result.score))) {
@@ -275,11 +289,19 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
       break;
     }
   }
+  // The loop knows how many of those that it scored.
+  if (ransac.found && num_matches > options.ransac.max_scored) {
+    matches.ScoreInFront(ransac.best, options.ransac.threshold_px,
+                         std::numeric_limits<double>::infinity(), &ransac.num_inliers);
+  }
   estimate.ransac_ms = MillisecondsSince(ransac_start);
   estimate.solver = solver->name;
+  estimate.stopped = stop.reason();
   if (!ransac.found) {
     estimate.status = EstimateStatus::kNoSolution;
-    estimate.message = "no sample of the matches determines a motion";
+    estimate.message = estimate.stopped != StopReason::kNone
+                           ? stop.Message() + " before a motion was found"
+                           : "no sample of the matches determines a motion";
     return estimate;
   }
   estimate.raw = ransac.best_minimal;
@@ -287,13 +309,16 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
   estimate.num_inliers = ransac.num_inliers;
   estimate.inlier_ratio = ransac.num_inliers / static_cast<double>(matches.size());
   estimate.status = EstimateStatus::kSuccess;
-  estimate.message = "ok";
+  estimate.message = estimate.stopped != StopReason::kNone ? stop.Message() : "ok";
   if (!options.refine_motion) return estimate;
 
   const auto refine_start = std::chrono::steady_clock::now();
   RefineOptions refine = options.refine;
   refine.prior_kind = solver->prior;
   refine.threshold_px = options.ransac.threshold_px;
+  const std::optional<double> left = stop.SecondsLeft();
+  if (left) refine.time_limit = std::min(*left, refine.time_limit.value_or(*left));
+  if (refine.cancel == nullptr) refine.cancel = options.cancel;
   estimate.refine = Refine(refine, matches, pair.prior, &estimate.pose);
   estimate.refine_ms = MillisecondsSince(refine_start);
   if (!estimate.refine.IsSolutionUsable()) {
@@ -301,6 +326,11 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
     estimate.message = "not refined: " + estimate.refine.message;
     estimate.pose = ransac.best;
     return estimate;
+  }
+  if (estimate.refine.stopped != StopReason::kNone) {
+    estimate.stopped = estimate.refine.stopped;
+    // Refine() knows of no more than what was left of the limit.
+    estimate.message = stop.Asked() ? stop.Message() : estimate.refine.message;
   }
   estimate.num_inliers = estimate.refine.num_inliers;
   estimate.inlier_ratio = estimate.num_inliers / static_cast<double>(matches.size());

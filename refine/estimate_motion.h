@@ -2,9 +2,12 @@
 #ifndef RIGEL_REFINE_ESTIMATE_MOTION_H_
 #define RIGEL_REFINE_ESTIMATE_MOTION_H_
 
+#include <atomic>
+#include <optional>
 #include <string>
 
 #include "rigel/core/frame_pair.h"
+#include "rigel/core/stop.h"
 #include "rigel/minimal/catalogue.h"
 #include "rigel/minimal/ransac.h"
 #include "rigel/minimal/solutions.h"
@@ -23,6 +26,12 @@ struct EstimateOptions {
   // ScaleMode::kFixed needs the prior's distance: the |t| that RANSAC finds may be arbitrary.
   // The solver's prior replaces refine.prior_kind; refine.threshold_px is taken from ransac.
   RefineOptions refine;
+
+  // Seconds from the call on, >= 0: after them the result is the best motion found by then, see
+  // MotionEstimate::stopped. What prepares the matches and a step in progress are not cut short.
+  std::optional<double> time_limit;
+  // Ends the call likewise once it is true; any thread may set it. Null, or outlives the call.
+  const std::atomic<bool>* cancel = nullptr;
 
   bool IsValid(std::string* error) const;
 };
@@ -51,6 +60,9 @@ struct MotionEstimate {
   double ransac_ms = 0.0;
   double refine_ms = 0.0;
   RefineSummary refine;
+  // What ended the call early; message says it too. The motion, if there is one, is the best found
+  // by then, and refine states no uncertainty unless it was done.
+  StopReason stopped = StopReason::kNone;
 
   bool HasMotion() const {
     return status == EstimateStatus::kSuccess || status == EstimateStatus::kNotRefined;
@@ -59,7 +71,7 @@ struct MotionEstimate {
 static_assert(kSameLayoutEverywhere<MotionEstimate>, "no member of MotionEstimate may be aligned");
 
 // Never throws, exits or logs on what `pair` or `options` hold. Thread-safe; the same input and
-// seed give the same result.
+// seed give the same result, unless a time limit or a cancel ended the search.
 MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& pair);
 
 }  // namespace rigel

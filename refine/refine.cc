@@ -25,25 +25,6 @@
 namespace rigel {
 namespace {
 
-bool CanBeWeighed(const MotionPrior& prior, PriorKind kind, std::string* error) {
-  const auto positive = [](const std::optional<double>& sigma) {
-    return !sigma.has_value() || (*sigma > 0 && std::isfinite(*sigma));
-  };
-  if (!positive(prior.gravity_sigma) || !positive(prior.axis_sigma) ||
-      !positive(prior.normal_sigma) || !(prior.distance_sigma >= 0) ||
-      !std::isfinite(prior.distance_sigma)) {
-    *error = "a sigma of the prior is not positive and finite";
-    return false;
-  }
-  const double distance = prior.distance.value_or(0.0);
-  if (!(distance >= 0) || !std::isfinite(distance)) {
-    *error = "the prior's distance is negative or not finite";
-    return false;
-  }
-  Alignment alignment;
-  return !HasPrior(prior, kind) || MakeAlignment(prior, kind, &alignment, error);
-}
-
 class Refiner {
  public:
   Refiner(const RefineOptions& options, const GroupedMatches& matches, const MotionPrior& prior)
@@ -51,7 +32,11 @@ class Refiner {
         matches_(matches),
         prior_(prior),
         sign_subset_(matches.EvenSubset(kSignSubset)),
-        engine_(matches) {}
+        engine_(matches),
+        stop_(options.time_limit, options.cancel),
+        progress_([this](int iteration, double cost) {
+          options_.progress({summary_.num_rounds + 1, iteration, cost});
+        }) {}
 
   RefineSummary Run(Pose* pose);
 
@@ -92,6 +77,8 @@ class Refiner {
   const MotionPrior& prior_;
   const GroupedMatches sign_subset_;
   SmallEngine engine_;
+  Stop stop_;
+  const std::function<void(int, double)> progress_;  // options_.progress of the round
   Alignment alignment_;
   std::vector<double> squared_errors_;
   std::vector<char> mask_, previous_mask_;  // grouped order
@@ -317,6 +304,7 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
                      options_.form != RefineForm::kBundle;
   std::array<double, 6> parameters = {0, 0, 0, 0, 0, 0};
   LeastSquaresSummary result;
+  const auto* progress = options_.progress ? &progress_ : nullptr;
   if (small) {
     SmallEngineOptions engine_options;
     engine_options.loss = options_.loss;
@@ -324,11 +312,13 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
     engine_options.max_num_iterations = options_.max_num_iterations;
     // The last step is some 1e-5 standard deviations long.
     engine_options.tolerance = 1e-12;
+    engine_options.stop = &stop_;
+    engine_options.progress = progress;
     result = engine_.Solve(engine_options, parameterization, weights_, prior, noise_px_,
                            parameters.data());
   } else {
     result = SolveWithCeres(options_, matches_, parameterization, weights_, prior, noise_px_, *pose,
-                            parameters.data());
+                            &stop_, progress, parameters.data());
   }
   Pose refined;
   parameterization.Evaluate(parameters.data(), &refined, nullptr);
@@ -404,6 +394,7 @@ bool Refiner::Iterate(Pose* pose) {
     scale_free_ = ScaleIsFree(*pose);
     if (!Solve(scale_free_, pose)) return false;
     ++summary_.num_rounds;
+    if (stop_.Asked()) break;
     const bool reselected = SelectInliers(*pose);
     SetNoise();
     const bool reweighted = SetWeights(*pose);
@@ -444,7 +435,6 @@ void Refiner::FillUncertainty(const Pose& pose) {
   }
   summary_.rotation_observable = summary_.covariance.has_value() &&
                                  RadToDeg(summary_.rotation_sigma) <= kRotationObservableDeg;
-  summary_.exceeds_chance = ExceedsChance(matches_, num_inliers_, options_.threshold_px);
   if (!summary_.exceeds_chance) {
     summary_.rotation_observable = false;
     summary_.translation_observable = false;
@@ -477,7 +467,7 @@ RefineSummary Refiner::Run(Pose* pose) {
     Fail(Termination::kFailure, "the start's R is not a rotation");
     return summary_;
   }
-  if (options_.use_prior && !CanBeWeighed(prior_, options_.prior_kind, &error)) {
+  if (options_.use_prior && !prior_.IsValid(&error)) {
     Fail(Termination::kFailure, error);
     return summary_;
   }
@@ -492,13 +482,15 @@ RefineSummary Refiner::Run(Pose* pose) {
   if (SearchesScale(result)) {
     ResolveSignAndScale(sign_subset_, options_.threshold_px, &result);
   }
-  bool done = Iterate(&result);
-  if (done && SearchesScale(result) && !ScaleIsFree(result) &&
+  bool done = true;
+  const auto go_on = [&] { return done && !stop_.Asked(); };
+  if (go_on()) done = Iterate(&result);
+  if (go_on() && SearchesScale(result) && !ScaleIsFree(result) &&
       SearchScale(matches_, options_.threshold_px, noise_px_, &result)) {
     done = Iterate(&result);
   }
   // A t with another sign or scale is not a minimum: refine again from there.
-  if (done) {
+  if (go_on()) {
     const Eigen::Vector3d t = result.t;
     const bool possible = ResolveSign(sign_subset_, options_.threshold_px, &result);
     if (!possible && SearchesScale(result)) {
@@ -507,21 +499,29 @@ RefineSummary Refiner::Run(Pose* pose) {
     if (result.t != t) done = Iterate(&result);
   }
   // Are there inliers that fit by chance?
-  if (done) {
+  if (go_on()) {
     excludes_chance_ = true;
     selected_at_.reset();
     if (SelectInliers(result)) done = Iterate(&result);
   }
   // What is said of the scale must be said of the final motion.
-  if (done && ScaleIsFree(result) != scale_free_) done = Iterate(&result);
+  if (go_on() && ScaleIsFree(result) != scale_free_) done = Iterate(&result);
+  const bool stopped = done && stop_.reason() != StopReason::kNone;
+  if (stopped) SelectInliers(result);
   summary_.median_residual_px = MedianResidual();
   if (!done) return summary_;
 
-  FillUncertainty(result);
+  summary_.exceeds_chance = ExceedsChance(matches_, num_inliers_, options_.threshold_px);
+  if (stopped) {
+    summary_.termination = Termination::kStopped;
+    summary_.stopped = stop_.reason();
+  } else {
+    FillUncertainty(result);
+  }
   summary_.num_inliers = num_inliers_;
   summary_.inliers.assign(mask_.size(), 0);
   for (int k = 0; k < matches_.size(); ++k) summary_.inliers[matches_.original(k)] = mask_[k];
-  summary_.message = TerminationName(summary_.termination);
+  summary_.message = stopped ? stop_.Message() : TerminationName(summary_.termination);
   *pose = result;
   return summary_;
 }
@@ -556,7 +556,7 @@ bool RefineOptions::IsValid(std::string* error) const {
     *error = "noise_px must be positive and finite";
     return false;
   }
-  return true;
+  return IsValidTimeLimit(time_limit, error);
 }
 
 RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,

@@ -3,6 +3,8 @@
 #ifndef RIGEL_REFINE_REFINE_H_
 #define RIGEL_REFINE_REFINE_H_
 
+#include <atomic>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +15,7 @@
 #include "rigel/core/pose.h"
 #include "rigel/core/prior.h"
 #include "rigel/core/rig.h"
+#include "rigel/core/stop.h"
 #include "rigel/minimal/grouped_matches.h"
 #include "rigel/refine/epipolar_residuals.h"
 #include "rigel/refine/loss.h"
@@ -50,6 +53,13 @@ enum class RefineEngine {
   kCeres,  // a ceres::Problem
 };
 
+// Where a refinement is.
+struct RefineProgress {
+  int round = 0;      // from 1
+  int iteration = 0;  // of the round's least squares, from 0
+  double cost = 0.0;  // 1/2 sum rho(r^2) by now
+};
+
 struct RefineOptions {
   RefineForm form = RefineForm::kFull;
   ResidualKind residual = ResidualKind::kSampson;
@@ -79,6 +89,13 @@ struct RefineOptions {
   // the n inliers, times sqrt(n / (n - 6)); at least a third of the threshold below 16 inliers.
   std::optional<double> noise_px;
 
+  // Seconds from the call on, >= 0, and a flag that any thread may set: either ends the refinement
+  // with Termination::kStopped after the iteration in progress.
+  std::optional<double> time_limit;
+  const std::atomic<bool>* cancel = nullptr;  // null, or outlives the call
+  // Called after each iteration, where it is not empty, by the thread that called Refine().
+  std::function<void(const RefineProgress&)> progress;
+
   bool IsValid(std::string* error) const;
 };
 
@@ -88,6 +105,9 @@ enum class Termination {
   kIterationLimit,  // usable, not converged
   kDegenerate,      // the matches do not determine the free parameters; pose unchanged
   kFailure,         // wrong input; pose unchanged
+  // By the time limit or the flag: pose is the best by then. It is no minimum, so that there is no
+  // covariance, and nothing is called observable.
+  kStopped,
 };
 
 const char* TerminationName(Termination termination);
@@ -95,6 +115,7 @@ const char* TerminationName(Termination termination);
 struct RefineSummary {
   Termination termination = Termination::kNotRun;
   std::string message = "Refine was not called.";
+  StopReason stopped = StopReason::kNone;  // what stopped it, with kStopped
   int num_rounds = -1;
   int num_iterations = -1;     // of all rounds
   double initial_cost = -1.0;  // 1/2 sum rho(r^2) over the first and the last selection
@@ -124,7 +145,8 @@ struct RefineSummary {
   bool scale_observable = false;
 
   bool IsSolutionUsable() const {
-    return termination == Termination::kConverged || termination == Termination::kIterationLimit;
+    return termination == Termination::kConverged || termination == Termination::kIterationLimit ||
+           termination == Termination::kStopped;
   }
   std::string BriefReport() const;
   // One clause on what is and what is not observable, and by how much.
@@ -133,7 +155,7 @@ struct RefineSummary {
 static_assert(kSameLayoutEverywhere<RefineSummary>, "no member of RefineSummary may be aligned");
 
 // Refines `pose`, which must be near the motion. Never throws, exits or logs; on kDegenerate and
-// kFailure `pose` is unchanged. Thread-safe; deterministic.
+// kFailure `pose` is unchanged. Thread-safe; deterministic unless stopped.
 RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,
                      const MotionPrior& prior, Pose* pose);
 RefineSummary Refine(const RefineOptions& options, const Rig& rig,

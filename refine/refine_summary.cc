@@ -42,12 +42,13 @@ constexpr std::array<std::pair<ResidualKind, const char*>, 3> kResidualNames = {
      {ResidualKind::kAngular, "angular"},
      {ResidualKind::kAlgebraic, "algebraic"}}};
 
-constexpr std::array<std::pair<Termination, const char*>, 5> kTerminationNames = {
+constexpr std::array<std::pair<Termination, const char*>, 6> kTerminationNames = {
     {{Termination::kNotRun, "not run"},
      {Termination::kConverged, "converged"},
      {Termination::kIterationLimit, "iteration limit"},
      {Termination::kDegenerate, "degenerate"},
-     {Termination::kFailure, "failure"}}};
+     {Termination::kFailure, "failure"},
+     {Termination::kStopped, "stopped"}}};
 
 }  // namespace
 
@@ -74,6 +75,9 @@ std::string RefineSummary::BriefReport() const {
 }
 
 std::string RefineSummary::ObservabilityReport() const {
+  if (termination == Termination::kStopped) {
+    return "it is not known what is observable: the refinement was not done (" + message + ")";
+  }
   char text[256];
   if (!rotation_observable && exceeds_chance) {
     if (rotation_sigma >= 0 && RadToDeg(rotation_sigma) < 180) {
