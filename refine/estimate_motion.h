@@ -2,23 +2,26 @@
 #ifndef RIGEL_REFINE_ESTIMATE_MOTION_H_
 #define RIGEL_REFINE_ESTIMATE_MOTION_H_
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "rigel/core/frame_pair.h"
 #include "rigel/minimal/catalogue.h"
 #include "rigel/minimal/ransac.h"
 #include "rigel/minimal/solutions.h"
 #include "rigel/refine/refine.h"
+#include "rigel/refine/solver_choice.h"
 
 namespace rigel {
 
 struct EstimateOptions {
-  // A name of SolverCatalogue(), or "auto": SuggestSolvers() of solver_choice.h, one after the
-  // other while the result is doubtful, so that a wrong prior costs time and not accuracy (unless
-  // refine.use_prior weighs it). With a form that takes the prior as exact (kPrior, kPriorDepths)
-  // only the first of them.
-  std::string solver = "4pt-axis";
-  RansacOptions ransac;
+  // A name of SolverCatalogue(), or "auto": SuggestSolvers() of solver_choice.h, as many of them as
+  // it takes to find a motion beyond doubt (motion_search.h), so that a wrong prior costs time and
+  // not accuracy (unless refine.use_prior weighs it). With a form that takes the prior as exact
+  // (kPrior, kPriorDepths) only the first of them.
+  std::string solver = "auto";
+  RansacOptions ransac;  // of "auto", its max_iterations are those of all solvers together
   bool refine_motion = true;
   // ScaleMode::kFixed needs the prior's distance: the |t| that RANSAC finds may be arbitrary.
   // The solver's prior replaces refine.prior_kind; refine.threshold_px is taken from ransac.
@@ -34,6 +37,7 @@ enum class EstimateStatus {
   kTooFewMatches,  // fewer than the solver's sample
   kNoSolution,     // no sample gave a motion
   kNotRefined,     // RANSAC succeeded, the refinement did not: pose is RANSAC's
+  kNoConsensus,    // no more matches agree than chance allows: pose means nothing
 };
 
 const char* EstimateStatusName(EstimateStatus status);
@@ -41,9 +45,10 @@ const char* EstimateStatusName(EstimateStatus status);
 struct MotionEstimate {
   EstimateStatus status = EstimateStatus::kNotRun;
   std::string message = "EstimateMotion was not called.";
-  std::string solver;  // whose hypotheses led to it
-  Pose pose;           // the estimate: refined where that was asked for and done
-  Solution raw;        // the best-scoring minimal hypothesis of RANSAC, before any optimization
+  std::string solver;               // whose hypotheses led to it
+  std::vector<SolverTrial> trials;  // what became of each solver; several with "auto"
+  Pose pose;                        // the estimate: refined where that was asked for and done
+  Solution raw;  // the best-scoring minimal hypothesis of RANSAC, before any optimization
   int num_inliers = 0;
   double inlier_ratio = 0.0;
   int iterations = 0;
@@ -51,6 +56,9 @@ struct MotionEstimate {
   double ransac_ms = 0.0;
   double refine_ms = 0.0;
   RefineSummary refine;
+  // Something speaks against the motion, as where the prior is wrong: see Doubt.
+  bool doubtful = false;
+  std::string doubt;  // what; empty if nothing does
 
   bool HasMotion() const {
     return status == EstimateStatus::kSuccess || status == EstimateStatus::kNotRefined;

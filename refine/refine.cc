@@ -444,7 +444,8 @@ void Refiner::FillUncertainty(const Pose& pose) {
   }
   summary_.rotation_observable = summary_.covariance.has_value() &&
                                  RadToDeg(summary_.rotation_sigma) <= kRotationObservableDeg;
-  summary_.exceeds_chance = ExceedsChance(matches_, num_inliers_, options_.threshold_px);
+  summary_.exceeds_chance =
+      ExceedsChance(matches_, num_inliers_, options_.threshold_px, options_.num_tries);
   if (!summary_.exceeds_chance) {
     summary_.rotation_observable = false;
     summary_.translation_observable = false;
@@ -554,6 +555,10 @@ bool RefineOptions::IsValid(std::string* error) const {
   }
   if (noise_px.has_value() && !(*noise_px > 0 && std::isfinite(*noise_px))) {
     *error = "noise_px must be positive and finite";
+    return false;
+  }
+  if (!(num_tries >= 1.0) || !std::isfinite(num_tries)) {
+    *error = "num_tries must be at least 1 and finite";
     return false;
   }
   return true;
