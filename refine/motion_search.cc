@@ -66,6 +66,9 @@ std::string WhyNoSample(const SolverInfo& solver) {
   return "there is no sample";
 }
 
+// Of so many matches' camera pairs 5pt+1 can draw: the solvers after it are not needed.
+constexpr double kEnoughCoverage = 0.5;
+
 class Search {
  public:
   Search(const std::vector<const SolverInfo*>& solvers, const MotionPrior& prior,
@@ -118,20 +121,25 @@ class Search {
   }
 
   // A few iterations of each until the motion of one gives no cause for doubt, which then is
-  // concluded. False if there is none.
+  // concluded. False if there is none. Those that need no prior come right after the first of
+  // those that do: of several that a prior allows all are wrong where it is.
   bool Probe() {
-    double coverage = 0.0;  // by solvers without a prior
+    std::vector<size_t> order, later;
     for (size_t k = 0; k < solvers_.size(); ++k) {
-      if (solvers_[k]->prior == PriorKind::kNone && coverage >= 0.5) {
-        trials_[k].solver = solvers_[k]->name;
-        trials_[k].note = "not needed";
-        continue;
-      }
+      const bool first = order.empty() || solvers_[k]->prior == PriorKind::kNone;
+      (first ? order : later).push_back(k);
+    }
+    order.insert(order.end(), later.begin(), later.end());
+    double coverage = 0.0;  // by solvers without a prior
+    for (size_t i = 0; i < order.size(); ++i) {
+      const size_t k = order[i];
+      const bool constrained = solvers_[k]->prior != PriorKind::kNone;
+      if (!constrained && coverage >= kEnoughCoverage) continue;
       if (!Begin(k)) continue;
       Attempt& attempt = *attempts_[k];
-      if (!attempt.NeedsPrior()) coverage = std::max(coverage, Coverage(*solvers_[k], matches_));
+      if (!constrained) coverage = std::max(coverage, Coverage(*solvers_[k], matches_));
       // Where the budget is small each gets a part of it.
-      const int left = static_cast<int>(solvers_.size() - k);
+      const int left = static_cast<int>(order.size() - i);
       attempt.Advance(std::min(kProbeIterations, std::max(1, budget_ / left)), &budget_);
       attempt.Settle();
       if (!attempt.result().found) continue;
