@@ -511,7 +511,8 @@ RefineSummary Refiner::Run(Pose* pose) {
   summary_.median_residual_px = MedianResidual();
   if (!done) return summary_;
 
-  summary_.exceeds_chance = ExceedsChance(matches_, num_inliers_, options_.threshold_px);
+  summary_.exceeds_chance =
+      ExceedsChance(matches_, num_inliers_, options_.threshold_px, options_.num_tries);
   if (stopped) {
     summary_.termination = Termination::kStopped;
     summary_.stopped = stop_.reason();
@@ -554,6 +555,10 @@ bool RefineOptions::IsValid(std::string* error) const {
   }
   if (noise_px.has_value() && !(*noise_px > 0 && std::isfinite(*noise_px))) {
     *error = "noise_px must be positive and finite";
+    return false;
+  }
+  if (!(num_tries >= 1.0) || !std::isfinite(num_tries)) {
+    *error = "num_tries must be at least 1 and finite";
     return false;
   }
   return IsValidTimeLimit(time_limit, error);

@@ -88,6 +88,9 @@ struct RefineOptions {
   // 1-sigma image noise where it is known; else estimated: 1.4826 times the median |residual| of
   // the n inliers, times sqrt(n / (n - 6)); at least a third of the threshold below 16 inliers.
   std::optional<double> noise_px;
+  // >= 1; so many motions were tried before the start was found, which the number of matches that
+  // agree must make up for (RefineSummary::exceeds_chance).
+  double num_tries = 1e7;
 
   // Seconds from the call on, >= 0, and a flag that any thread may set: either ends the refinement
   // with Termination::kStopped after the iteration in progress.
