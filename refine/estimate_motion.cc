@@ -6,8 +6,11 @@
 #include <optional>
 #include <vector>
 
+#include "rigel/core/pixel_unit.h"
+#include "rigel/core/rig_centre.h"
 #include "rigel/minimal/prepared_matches.h"
 #include "rigel/minimal/prosac.h"
+#include "rigel/refine/rig_doubts.h"
 #include "rigel/refine/sign_and_scale.h"
 #include "rigel/refine/small_engine.h"
 #include "rigel/refine/solver_choice.h"
@@ -218,11 +221,13 @@ bool EstimateOptions::IsValid(std::string* error) const {
   return ransac.IsValid(error) && (!refine_motion || refined.IsValid(error));
 }
 
-MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& pair) {
+MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pair) {
   std::string error;
-  if (!options.IsValid(&error) || !pair.IsValid(&error)) {
+  if (!given.IsValid(&error) || !pair.IsValid(&error)) {
     return Refused(EstimateStatus::kInvalidInput, error);
   }
+  EstimateOptions options = given;
+  options.ransac.threshold_px = ThresholdPx(given.ransac.threshold_px, pair.rig);
   const double distance = pair.prior.distance.value_or(0.0);
   if (options.refine_motion && options.refine.scale == ScaleMode::kFixed &&
       !(distance > 0 && std::isfinite(distance))) {
@@ -247,7 +252,9 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
 
   MotionEstimate estimate;
   const auto ransac_start = std::chrono::steady_clock::now();
-  const GroupedMatches matches(pair.rig, pair.matches);
+  // Of the motion of the rig's centre; the body's is made of it in the end.
+  const Eigen::Vector3d centre = RigCentre(pair.rig);
+  const GroupedMatches matches(WithOrigin(pair.rig, centre), pair.matches);
   RansacResult<Solution> ransac;
   const SolverInfo* solver = nullptr;
   for (const SolverInfo* candidate : solvers) {
@@ -283,7 +290,8 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
     return estimate;
   }
   estimate.raw = ransac.best_minimal;
-  estimate.pose = ransac.best;
+  estimate.raw.t = MotionOfBody(ransac.best_minimal, centre).t;
+  estimate.pose = MotionOfBody(ransac.best, centre);
   estimate.num_inliers = ransac.num_inliers;
   estimate.inlier_ratio = ransac.num_inliers / static_cast<double>(matches.size());
   estimate.status = EstimateStatus::kSuccess;
@@ -294,16 +302,16 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
   RefineOptions refine = options.refine;
   refine.prior_kind = solver->prior;
   refine.threshold_px = options.ransac.threshold_px;
-  estimate.refine = Refine(refine, matches, pair.prior, &estimate.pose);
+  estimate.refine = RefineAbout(refine, matches, centre, pair.prior, &estimate.pose);
   estimate.refine_ms = MillisecondsSince(refine_start);
   if (!estimate.refine.IsSolutionUsable()) {
     estimate.status = EstimateStatus::kNotRefined;
     estimate.message = "not refined: " + estimate.refine.message;
-    estimate.pose = ransac.best;
     return estimate;
   }
   estimate.num_inliers = estimate.refine.num_inliers;
   estimate.inlier_ratio = estimate.num_inliers / static_cast<double>(matches.size());
+  if (options.check_rig) estimate.rig_doubts = FindRigDoubts(given, pair, estimate);
   return estimate;
 }
 

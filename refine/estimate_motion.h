@@ -3,6 +3,7 @@
 #define RIGEL_REFINE_ESTIMATE_MOTION_H_
 
 #include <string>
+#include <vector>
 
 #include "rigel/core/frame_pair.h"
 #include "rigel/minimal/catalogue.h"
@@ -24,6 +25,10 @@ struct EstimateOptions {
   // The solver's prior replaces refine.prior_kind; refine.threshold_px is taken from ransac.
   RefineOptions refine;
 
+  // Looks for what contradicts the rig (MotionEstimate::rig_doubts). Takes time where something
+  // does: a second estimate or a few.
+  bool check_rig = true;
+
   bool IsValid(std::string* error) const;
 };
 
@@ -38,6 +43,20 @@ enum class EstimateStatus {
 
 const char* EstimateStatusName(EstimateStatus status);
 
+enum class RigDoubtKind {
+  kFrozen,   // camera1 shows the same image twice
+  kFewFit,   // few of the matches between camera1 and camera2 fit
+  kSwapped,  // more would fit if the two were swapped
+};
+
+// What in a pair contradicts its rig, for a person to look into (rig_doubts.h).
+struct RigDoubt {
+  RigDoubtKind kind = RigDoubtKind::kFewFit;
+  int camera1 = 0;  // at most camera2
+  int camera2 = 0;
+  std::string message;  // "cameras 0-1: 12 of 760 fit; are they swapped, ..."
+};
+
 struct MotionEstimate {
   EstimateStatus status = EstimateStatus::kNotRun;
   std::string message = "EstimateMotion was not called.";
@@ -51,6 +70,7 @@ struct MotionEstimate {
   double ransac_ms = 0.0;
   double refine_ms = 0.0;
   RefineSummary refine;
+  std::vector<RigDoubt> rig_doubts;  // of a refined motion; the estimate is as without them
 
   bool HasMotion() const {
     return status == EstimateStatus::kSuccess || status == EstimateStatus::kNotRefined;
