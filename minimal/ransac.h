@@ -16,6 +16,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "rigel/core/pixel_unit.h"
 #include "rigel/core/random.h"
 #include "rigel/core/stop.h"
 
@@ -33,7 +34,9 @@ enum class ScoreKind {
 };
 
 struct RansacOptions {
-  double threshold_px = 1.5;   // in 1e-6 to 1e6; 3 sigma keeps the estimate efficient
+  // In 1e-12 to 1e12; 3 sigma keeps the estimate efficient. kAutoThresholdPx: 1.5, or 1/300 of the
+  // shortest focal length where that is less; for EstimateMotion(), which resolves it.
+  double threshold_px = kAutoThresholdPx;
   double confidence = 0.9999;  // in (0, 1): that one sample of inliers was drawn
   int max_iterations = 10000;  // >= 1
   // At least so many: noise makes most samples of inliers poor hypotheses.

@@ -8,10 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "rigel/core/pixel_unit.h"
+#include "rigel/core/rig_centre.h"
 #include "rigel/minimal/alignment.h"
 #include "rigel/minimal/grouped_matches.h"
 #include "rigel/refine/chance.h"
 #include "rigel/refine/motion_search.h"
+#include "rigel/refine/rig_doubts.h"
 
 namespace rigel {
 namespace {
@@ -62,12 +65,14 @@ bool EstimateOptions::IsValid(std::string* error) const {
          IsValidTimeLimit(time_limit, error);
 }
 
-MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& pair) {
-  Stop stop(options.time_limit, options.cancel);
+MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pair) {
+  Stop stop(given.time_limit, given.cancel);
   std::string error;
-  if (!options.IsValid(&error) || !pair.IsValid(&error)) {
+  if (!given.IsValid(&error) || !pair.IsValid(&error)) {
     return Refused(EstimateStatus::kInvalidInput, error);
   }
+  EstimateOptions options = given;
+  options.ransac.threshold_px = ThresholdPx(given.ransac.threshold_px, pair.rig);
   const double distance = pair.prior.distance.value_or(0.0);
   if (options.refine_motion && options.refine.scale == ScaleMode::kFixed &&
       !(distance > 0 && std::isfinite(distance))) {
@@ -96,7 +101,9 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
   }
 
   const auto ransac_start = std::chrono::steady_clock::now();
-  const GroupedMatches matches(pair.rig, pair.matches);
+  // Of the motion of the rig's centre; the body's is made of it in the end.
+  const Eigen::Vector3d centre = RigCentre(pair.rig);
+  const GroupedMatches matches(WithOrigin(pair.rig, centre), pair.matches);
   MotionSearch search = SearchMotion(solvers, pair.prior, matches, options.ransac, &stop);
   // The loop knows how many of those that it scored.
   if (search.best.found && matches.size() > options.ransac.max_scored) {
@@ -125,7 +132,8 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
     return estimate;
   }
   estimate.raw = ransac.best_minimal;
-  estimate.pose = ransac.best;
+  estimate.raw.t = MotionOfBody(ransac.best_minimal, centre).t;
+  estimate.pose = MotionOfBody(ransac.best, centre);
   estimate.num_inliers = ransac.num_inliers;
   estimate.status = EstimateStatus::kSuccess;
   estimate.message = estimate.stopped != StopReason::kNone ? stop.Message() : "ok";
@@ -138,7 +146,7 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
     const std::optional<double> left = stop.SecondsLeft();
     if (left) refine.time_limit = std::min(*left, refine.time_limit.value_or(*left));
     if (refine.cancel == nullptr) refine.cancel = options.cancel;
-    estimate.refine = Refine(refine, matches, pair.prior, &estimate.pose);
+    estimate.refine = RefineAbout(refine, matches, centre, pair.prior, &estimate.pose);
     estimate.refine_ms = MillisecondsSince(refine_start);
     if (estimate.refine.IsSolutionUsable()) {
       estimate.num_inliers = estimate.refine.num_inliers;
@@ -166,9 +174,16 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
     return estimate;
   }
   const Doubt doubt =
-      FindDoubt(pair.prior, *search.solver, estimate.pose, matches, options.ransac.threshold_px);
+      FindDoubt(pair.prior, *search.solver, MotionOfPoint(estimate.pose, centre), matches,
+                options.ransac.threshold_px);
   estimate.doubtful = doubt.Any();
   estimate.doubt = doubt.Reason();
+  if (estimate.status == EstimateStatus::kSuccess && options.refine_motion && options.check_rig &&
+      estimate.stopped == StopReason::kNone) {
+    EstimateOptions again = given;
+    again.time_limit = stop.SecondsLeft();
+    estimate.rig_doubts = FindRigDoubts(again, pair, estimate);
+  }
   return estimate;
 }
 

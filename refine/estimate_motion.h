@@ -36,6 +36,10 @@ struct EstimateOptions {
   // Ends the call likewise once it is true; any thread may set it. Null, or outlives the call.
   const std::atomic<bool>* cancel = nullptr;
 
+  // Looks for what contradicts the rig (MotionEstimate::rig_doubts). Takes time where something
+  // does: a second estimate or a few.
+  bool check_rig = true;
+
   bool IsValid(std::string* error) const;
 };
 
@@ -50,6 +54,20 @@ enum class EstimateStatus {
 };
 
 const char* EstimateStatusName(EstimateStatus status);
+
+enum class RigDoubtKind {
+  kFrozen,   // camera1 shows the same image twice
+  kFewFit,   // few of the matches between camera1 and camera2 fit
+  kSwapped,  // more would fit if the two were swapped
+};
+
+// What in a pair contradicts its rig, for a person to look into (rig_doubts.h).
+struct RigDoubt {
+  RigDoubtKind kind = RigDoubtKind::kFewFit;
+  int camera1 = 0;  // at most camera2
+  int camera2 = 0;
+  std::string message;  // "cameras 0-1: 12 of 760 fit; are they swapped, ..."
+};
 
 struct MotionEstimate {
   EstimateStatus status = EstimateStatus::kNotRun;
@@ -71,6 +89,7 @@ struct MotionEstimate {
   // Something speaks against the motion, as where the prior is wrong: see Doubt.
   bool doubtful = false;
   std::string doubt;  // what; empty if nothing does
+  std::vector<RigDoubt> rig_doubts;  // of a refined motion; the estimate is as without them
 
   bool HasMotion() const {
     return status == EstimateStatus::kSuccess || status == EstimateStatus::kNotRefined;

@@ -1,6 +1,7 @@
 #include "rigel/tools/estimation_flags.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <iostream>
 #include <sstream>
@@ -8,6 +9,7 @@
 #include <gflags/gflags.h>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/pixel_unit.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/refine/solver_choice.h"
 
@@ -43,8 +45,9 @@ DEFINE_string(residual, "sampson",
               "intra-camera matches and a free scale it collapses to zero motion)");
 DEFINE_string(loss, "cauchy",
               "robust loss of the refinement: none, huber, cauchy, tukey, truncated");
-DEFINE_double(threshold_px, 1.5,
-              "inlier threshold on the Sampson error; 3 sigma of the noise is best");
+DEFINE_string(threshold_px, "auto",
+              "inlier threshold on the Sampson error; 3 sigma of the noise is best. auto: 1.5, or "
+              "1/300 of the shortest focal length where that is less");
 DEFINE_double(confidence, 0.9999,
               "RANSAC stops when a sample of inliers was drawn with this probability");
 DEFINE_int32(max_iterations, 10000, "largest number of RANSAC iterations");
@@ -64,6 +67,18 @@ std::string Text(double value) {
   std::ostringstream text;
   text << value;
   return text.str();
+}
+
+// The whole of `text` as a positive finite number.
+bool ParsePositive(const std::string& text, double* value) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || !(number > 0) ||
+      !std::isfinite(number)) {
+    return false;
+  }
+  *value = number;
+  return true;
 }
 
 const std::optional<double>& SigmaOf(const MotionPrior& prior, PriorKind kind) {
@@ -134,7 +149,11 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
   estimate.refine.scale = FLAGS_fix_translation_norm ? ScaleMode::kFixed : ScaleMode::kAuto;
   options->prior.true_distance = FLAGS_fix_translation_norm;
   options->use_stated_noise = !FLAGS_estimate_noise;
-  estimate.ransac.threshold_px = FLAGS_threshold_px;
+  if (FLAGS_threshold_px == "auto") {
+    estimate.ransac.threshold_px = kAutoThresholdPx;
+  } else if (!ParsePositive(FLAGS_threshold_px, &estimate.ransac.threshold_px)) {
+    return wrong("threshold_px", FLAGS_threshold_px, "auto or a positive number");
+  }
   estimate.ransac.confidence = FLAGS_confidence;
   estimate.ransac.max_iterations = FLAGS_max_iterations;
   estimate.ransac.seed = FLAGS_seed;

@@ -229,6 +229,7 @@ int Run() {
     }
   }
 
+  for (const std::string& line : RigDoubtLines(report)) std::cerr << line << "\n";
   report.refined = estimate.refine_motion;
   // An empty shard has nothing to chain, and nothing is wrong with it.
   if (Chained() && !report.pairs.empty()) ok = Chain(positions, &report) && ok;
