@@ -8,10 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "rigel/core/body_axes.h"
 #include "rigel/core/pixel_unit.h"
 #include "rigel/core/rig_centre.h"
 #include "rigel/minimal/alignment.h"
 #include "rigel/minimal/grouped_matches.h"
+#include "rigel/minimal/two_point_ackermann.h"
 #include "rigel/refine/chance.h"
 #include "rigel/refine/motion_search.h"
 #include "rigel/refine/rig_doubts.h"
@@ -29,6 +31,17 @@ MotionEstimate Refused(EstimateStatus status, const std::string& message) {
   estimate.status = status;
   estimate.message = message;
   return estimate;
+}
+
+// Ackermann motion has a front: that of the rig where the prior states none.
+MotionPrior WithForward(const FramePair& pair) {
+  MotionPrior prior = pair.prior;
+  BodyAxes axes;
+  std::string error;
+  if (!prior.forward && ResolveBodyAxes(pair.rig, {}, {}, &axes, &error)) {
+    prior.forward = axes.forward;
+  }
+  return prior;
 }
 
 }  // namespace
@@ -93,18 +106,22 @@ MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pai
                          RefineFormName(options.refine.form) + "' to hold");
     }
   }
+  const MotionPrior prior = WithForward(pair);
   for (const SolverInfo* solver : solvers) {
     Alignment alignment;
-    if (!MakeAlignment(pair.prior, solver->prior, &alignment, &error)) {
+    if (!MakeAlignment(prior, solver->prior, &alignment, &error)) {
       return Refused(EstimateStatus::kInvalidInput, options.solver + ": " + error);
     }
   }
 
   const auto ransac_start = std::chrono::steady_clock::now();
-  // Of the motion of the rig's centre; the body's is made of it in the end.
-  const Eigen::Vector3d centre = RigCentre(pair.rig);
+  // Of the motion of the rig's centre; the body's is made of it in the end. The Ackermann model is
+  // of the body's origin.
+  const bool ackermann = solvers[0]->solve == &Solve2ptAckermann;
+  const Eigen::Vector3d centre =
+      ackermann ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : RigCentre(pair.rig);
   const GroupedMatches matches(WithOrigin(pair.rig, centre), pair.matches);
-  MotionSearch search = SearchMotion(solvers, pair.prior, matches, options.ransac, &stop);
+  MotionSearch search = SearchMotion(solvers, prior, matches, options.ransac, &stop);
   // The loop knows how many of those that it scored.
   if (search.best.found && matches.size() > options.ransac.max_scored) {
     matches.ScoreInFront(search.best.best, options.ransac.threshold_px,
