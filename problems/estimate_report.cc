@@ -9,6 +9,7 @@
 #include "rigel/problems/csv.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/report.h"
+#include "rigel/problems/report_json.h"
 #include "rigel/problems/table.h"
 
 namespace rigel {
@@ -142,8 +143,7 @@ std::vector<std::string> RigDoubtLines(const EstimateReport& report) {
 
 std::string EstimateJson(const EstimateReport& report, bool times) {
   const std::vector<FramePair>& pairs = report.pairs;
-  Json json;
-  json["format"] = "rigel-estimate 1";
+  Json json = NewReport("rigel-estimate 1");
   json["options"] = Json::object();
   for (const auto& [name, value] : report.options) json["options"][name] = value;
   // Pair by pair: a tree of many would be large.

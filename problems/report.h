@@ -12,6 +12,7 @@
 #include "rigel/problems/comparison.h"
 #include "rigel/problems/shard.h"
 #include "rigel/problems/trajectory.h"
+#include "rigel/problems/version.h"
 #include "rigel/refine/estimate_motion.h"
 
 namespace rigel {
@@ -21,6 +22,7 @@ using ReportOptions = std::vector<std::pair<std::string, std::string>>;
 
 // All that a report of rigel_compare is made of.
 struct ComparisonReport {
+  std::string version = RigelVersion();  // whose results they are; empty: of 0.1
   ReportOptions options;
   std::vector<SolverResults> solvers;  // at least one, all of the same pairs
   std::optional<Shard> shard;          // of a run over a part of the files, ...

@@ -25,8 +25,8 @@
 #include "rigel/problems/exception_message.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/output_place.h"
+#include "rigel/problems/version.h"
 #include "rigel/problems/whole_file.h"
-#include "rigel/tools/version.h"
 
 // gflags leaves the process through this pointer, with code 1; it is not in a public header.
 namespace google {
@@ -148,7 +148,8 @@ void PrintHelp(const std::string& usage) {
     }
     flush();
   }
-  std::cout << "\nExit code: 0 done, 1 failed, 2 wrong flag.\n";
+  std::cout
+      << "\nExit code: 0 done, 1 failed, 2 wrong flag, 3 a bound that a flag set was missed.\n";
 }
 
 }  // namespace
@@ -177,7 +178,7 @@ void ParseFlags(const std::string& usage, int* argc, char*** argv) {
   FLAGS_minloglevel = google::GLOG_FATAL;
   google::InitGoogleLogging((*argv)[0]);
   gflags::SetUsageMessage(usage);
-  gflags::SetVersionString(RIGEL_VERSION);
+  gflags::SetVersionString(RigelVersion());
   // The name of the program, which --version prints before the flags are parsed.
   gflags::SetArgv(*argc, const_cast<const char**>(*argv));
   google::gflags_exitfunc = &ExitUsage;
@@ -189,7 +190,7 @@ void ParseFlags(const std::string& usage, int* argc, char*** argv) {
       std::exit(FlushStdout() ? kExitDone : kExitFailed);
     }
     if (argument == "--version" || argument == "-version") {
-      std::cout << ProgramName() << " " << RIGEL_VERSION << "\n";
+      std::cout << ProgramName() << " " << RigelVersion() << "\n";
       std::exit(FlushStdout() ? kExitDone : kExitFailed);
     }
   }
