@@ -49,19 +49,20 @@ class EurocSequence : public testing::Test {
   ImageSequence Read(const std::string& below = "") {
     ImageSequence sequence;
     std::string error;
-    EXPECT_TRUE(ReadEurocSequence(root_ + below, &sequence, &error)) << error;
+    EXPECT_TRUE(ReadEurocSequence(root_ + below, options_, &sequence, &error)) << error;
     return sequence;
   }
   std::string Error() {
     ImageSequence sequence;
     std::string error;
-    EXPECT_FALSE(ReadEurocSequence(root_, &sequence, &error));
+    EXPECT_FALSE(ReadEurocSequence(root_, options_, &sequence, &error));
     EXPECT_THAT(error, testing::StartsWith(root_));
     EXPECT_THAT(error, testing::Not(HasSubstr("\n")));
     return error;
   }
 
   std::string root_;
+  EurocOptions options_;
 };
 
 TEST_F(EurocSequence, CamerasAreAsTheirSensorsSay) {
