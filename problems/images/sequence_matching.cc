@@ -231,7 +231,7 @@ bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequenc
     return false;
   }
   RemoveLeftOvers(directory, [](const std::string& name) {
-    return EndsWith(name, kSuffix) || name == kSettingsName;
+    return IsMatchFileName(name) || name == kSettingsName;
   });
   for (const std::string& name : there) {
     FramePair ignored;
