@@ -8,6 +8,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/csv.h"
+#include "rigel/problems/printable.h"
 #include "rigel/problems/report_json.h"
 #include "rigel/problems/table.h"
 
@@ -144,7 +145,7 @@ std::string CalibrationJson(const CalibrationReport& report) {
     }
     json["gravity"] = gravity;
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return PrintableJson(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 std::map<std::string, std::string> PlaneLines(const PlaneCalibration& plane, bool normal,

@@ -8,6 +8,7 @@
 #include "rigel/core/angles.h"
 #include "rigel/problems/csv.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/problems/printable.h"
 #include "rigel/problems/report.h"
 #include "rigel/problems/report_json.h"
 #include "rigel/problems/table.h"
@@ -21,11 +22,7 @@ using Json = nlohmann::ordered_json;
 std::string ShortName(const std::string& name) {
   const size_t slash = name.find_last_of('/');
   std::string text = slash == std::string::npos ? name : name.substr(slash + 1);
-  const std::string ending = ".matches";
-  if (text.size() > ending.size() &&
-      text.compare(text.size() - ending.size(), ending.size(), ending) == 0) {
-    text.resize(text.size() - ending.size());
-  }
+  if (IsMatchFileName(text)) text.resize(text.rfind(".matches"));
   constexpr size_t kWidth = 16;
   return Shortened(PrintablePath(text), kWidth);
 }
@@ -207,7 +204,7 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
   }
   text += pairs.empty() ? "]" : "\n  ]";
   if (report.trajectories) text += ",\n  \"trajectories\": " + TrajectoriesJson(report);
-  return text + "\n}\n";
+  return PrintableJson(text + "\n}\n");
 }
 
 std::string EstimateCsv(const EstimateReport& report, bool times) {

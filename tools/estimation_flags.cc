@@ -15,11 +15,12 @@
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/message_groups.h"
 #include "rigel/refine/solver_choice.h"
+#include "rigel/tools/tool.h"
 
 DEFINE_string(
     matches, "",
-    "match files and directories of *.matches, comma separated; a comma in a path cannot be "
-    "passed");
+    "match files (*.matches, *.matches.gz) and directories of them, comma separated; - is stdin; a "
+    "comma in a path cannot be passed");
 DEFINE_string(use, "all",
               "which matches are used: all, intra (same camera at both times) or inter");
 DEFINE_string(
@@ -110,6 +111,10 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
   if (FLAGS_matches.empty()) {
     *error = "--matches is missing: name match files or directories";
     return false;
+  }
+  const std::vector<std::string> items = SplitCommas(FLAGS_matches);
+  if (std::count(items.begin(), items.end(), "-") > 1) {
+    return wrong("matches", FLAGS_matches, "'-' once: stdin can be read but once");
   }
   if (!ParseMatchUse(FLAGS_use, &options->use)) {
     return wrong("use", FLAGS_use, "all, intra or inter");
@@ -216,9 +221,10 @@ bool CanRefine(const EstimateOptions& estimate, const std::string& solver, std::
 
 InputFiles ListInput() {
   InputFiles input;
-  std::vector<std::string> errors;
-  input.paths = ListMatchFiles(FLAGS_matches, &errors);
+  std::vector<std::string> errors, notes;
+  input.paths = ListMatchFiles(FLAGS_matches, &errors, &notes);
   input.all_there = errors.empty();
+  for (const std::string& note : notes) std::cerr << note << "\n";
   for (const std::string& error : errors) std::cerr << error << "\n";
   input.all = input.paths;
   input.total = static_cast<int>(input.all.size());

@@ -94,11 +94,8 @@ std::vector<std::string> OtherMatchFiles(const std::string& directory, int num_p
   fs::directory_iterator entry(directory, *code);
   for (; !*code && entry != fs::directory_iterator(); entry.increment(*code)) {
     const std::string name = entry->path().filename().string();
-    const std::string ending = ".matches";
     std::error_code ignored;
-    if (name.size() > ending.size() &&
-        name.compare(name.size() - ending.size(), ending.size(), ending) == 0 &&
-        !IsOwn(name, num_pairs) && !entry->is_directory(ignored)) {
+    if (IsMatchFileName(name) && !IsOwn(name, num_pairs) && !entry->is_directory(ignored)) {
       others.push_back(name);
     }
   }

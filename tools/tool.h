@@ -64,7 +64,8 @@ bool OutputsDiffer(const std::vector<OutputFlag>& outputs, std::string* error);
 bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
                         const std::vector<std::string>& inputs, std::string* error);
 
-// Reads a whole file of at most 1 GiB. False with a message on stderr if that fails.
+// Reads a text file (rigel/problems/input_file.h) of at most 1 GiB without its byte order mark. False
+// with a message on stderr if that fails.
 bool ReadInput(const std::string& path, std::string* text);
 
 // Splits at commas; empty parts are dropped.
