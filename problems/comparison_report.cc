@@ -3,6 +3,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/csv.h"
+#include "rigel/problems/printable.h"
 #include "rigel/problems/report.h"
 #include "rigel/problems/report_json.h"
 #include "rigel/problems/sequence_tables.h"
@@ -141,7 +142,7 @@ std::string ComparisonJson(const ComparisonReport& report,
     }
     text += report.solvers.front().pairs.empty() ? "]\n}" : "\n  ]\n}";
   }
-  return text + "\n";
+  return PrintableJson(text + "\n");
 }
 
 std::string ComparisonCsv(const std::vector<SolverResults>& solvers) {

@@ -63,6 +63,10 @@ std::string EstimateTable(const EstimateReport& report);
 std::string EstimateJson(const EstimateReport& report, bool times);
 std::string EstimateCsv(const EstimateReport& report, bool times);
 
+// What contradicts the rig, as lines of printable text: of one kind and camera pair the first, with
+// its pair and the number of others.
+std::vector<std::string> RigDoubtLines(const EstimateReport& report);
+
 // Drift of report.trajectories that have a truth; 100 columns at most. Empty if none has.
 std::string DriftTable(const EstimateReport& report);
 

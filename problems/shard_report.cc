@@ -51,7 +51,8 @@ MotionErrors Errors(const Json& json) {
 EstimateStatus Status(const std::string& name) {
   for (const EstimateStatus status :
        {EstimateStatus::kNotRun, EstimateStatus::kSuccess, EstimateStatus::kInvalidInput,
-        EstimateStatus::kTooFewMatches, EstimateStatus::kNoSolution, EstimateStatus::kNotRefined}) {
+        EstimateStatus::kTooFewMatches, EstimateStatus::kNoSolution, EstimateStatus::kNotRefined,
+        EstimateStatus::kNoConsensus}) {
     if (name == EstimateStatusName(status)) return status;
   }
   Fail("there is no status '" + name + "'");

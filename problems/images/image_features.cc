@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "rigel/problems/exception_message.h"
 #include "rigel/problems/match_file.h"
 
 namespace rigel {
@@ -34,6 +36,36 @@ bool IsCutOffPng(const std::vector<char>& bytes) {
   return text.substr(0, kBegin.size()) == kBegin && text.rfind(kEnd) == std::string_view::npos;
 }
 
+// The larger an image, the more its bytes can announce: told before anything is decoded.
+constexpr int64_t kMaxPixels = 200000000;
+constexpr size_t kMaxImageBytes = size_t{1} << 30;
+
+// Width times height by the head of a PNG or a JPEG; 0 if there is none. Of other kinds OpenCV
+// decodes at most 2^30 pixels.
+int64_t AnnouncedPixels(const std::vector<char>& bytes) {
+  const auto number = [&](size_t begin, size_t count) {
+    int64_t value = 0;
+    for (size_t k = begin; k < begin + count; ++k) {
+      value = 256 * value + static_cast<unsigned char>(bytes[k]);
+    }
+    return value;
+  };
+  const std::string_view text(bytes.data(), bytes.size());
+  if (text.substr(0, 4) == "\x89PNG") {
+    return bytes.size() < 24 ? 0 : number(16, 4) * number(20, 4);
+  }
+  if (text.substr(0, 2) != "\xff\xd8") return 0;
+  // Segments: ff, kind, length with these two bytes; the frame's are c0 to cf but for three.
+  for (size_t k = 2; k + 9 < bytes.size() && bytes[k] == '\xff';) {
+    const auto kind = static_cast<int>(number(k + 1, 1));
+    if (kind >= 0xc0 && kind <= 0xcf && kind != 0xc4 && kind != 0xc8 && kind != 0xcc) {
+      return number(k + 5, 2) * number(k + 7, 2);
+    }
+    k += kind == 0xff ? 1 : 2 + static_cast<size_t>(number(k + 2, 2));
+  }
+  return 0;
+}
+
 bool ReadImage(const std::string& path, cv::Mat* image, std::string* error) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
@@ -41,8 +73,17 @@ bool ReadImage(const std::string& path, cv::Mat* image, std::string* error) {
     return false;
   }
   std::vector<char> bytes;
-  for (char buffer[1 << 16]; file.read(buffer, sizeof(buffer)) || file.gcount() > 0;) {
-    bytes.insert(bytes.end(), buffer, buffer + file.gcount());
+  std::error_code no_size;
+  const uintmax_t size = std::filesystem::file_size(path, no_size);
+  bool too_long = !no_size && size > kMaxImageBytes;
+  for (char buffer[1 << 16];
+       !too_long && (file.read(buffer, sizeof(buffer)) || file.gcount() > 0);) {
+    too_long = bytes.size() + static_cast<size_t>(file.gcount()) > kMaxImageBytes;
+    if (!too_long) bytes.insert(bytes.end(), buffer, buffer + file.gcount());
+  }
+  if (too_long) {
+    *error = PrintablePath(path) + ": more than 1 GiB, expected an image of no more";
+    return false;
   }
   if (file.bad()) {
     *error = PrintablePath(path) + ": cannot be read";
@@ -52,8 +93,18 @@ bool ReadImage(const std::string& path, cv::Mat* image, std::string* error) {
     *error = PrintablePath(path) + ": the image is cut off";
     return false;
   }
+  const auto too_large = [&](int64_t pixels) {
+    *error = PrintablePath(path) + ": " + std::to_string(pixels) + " pixels, expected at most " +
+             std::to_string(kMaxPixels / 1000000) + " million";
+    return false;
+  };
+  const int64_t announced = AnnouncedPixels(bytes);
+  if (announced > kMaxPixels) return too_large(announced);
   if (!bytes.empty()) {
     *image = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+  }
+  if (static_cast<int64_t>(image->total()) > kMaxPixels) {
+    return too_large(static_cast<int64_t>(image->total()));
   }
   if (!image->empty()) return true;
   *error = PrintablePath(path) + ": not an image that can be decoded" +
@@ -228,7 +279,7 @@ bool ExtractFeatures(const FeatureOptions& options, const ImageCamera& camera,
   *features = std::move(result);
   return true;
 } catch (const std::exception& exception) {
-  *error = PrintablePath(path) + ": " + PrintablePath(exception.what());
+  *error = PrintablePath(path) + ": " + ExceptionMessage(exception);
   return false;
 }
 

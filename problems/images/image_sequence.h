@@ -3,8 +3,11 @@
 #ifndef RIGEL_PROBLEMS_IMAGES_IMAGE_SEQUENCE_H_
 #define RIGEL_PROBLEMS_IMAGES_IMAGE_SEQUENCE_H_
 
+#include <algorithm>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -41,12 +44,57 @@ struct ImageFrame {
   std::optional<Pose> world_from_body;  // ground truth
 };
 
+// Frames by their numbers, 0 to size() - 1. Where a data set leaves numbers out there are no
+// frames, and nothing is stored for them.
+class ImageFrames {
+ public:
+  // One more than the last number.
+  size_t size() const { return numbers_.empty() ? 0 : static_cast<size_t>(numbers_.back()) + 1; }
+
+  // The numbers that have a frame, ascending.
+  const std::vector<int>& numbers() const { return numbers_; }
+
+  // The number is above all others.
+  void Add(int number, ImageFrame frame) {
+    numbers_.push_back(number);
+    frames_.push_back(std::move(frame));
+  }
+  void push_back(ImageFrame frame) { Add(static_cast<int>(size()), std::move(frame)); }
+
+  // Null where there is none.
+  const ImageFrame* Find(int number) const {
+    const auto found = std::lower_bound(numbers_.begin(), numbers_.end(), number);
+    return found == numbers_.end() || *found != number ? nullptr
+                                                       : &frames_[found - numbers_.begin()];
+  }
+
+  // There must be one.
+  const ImageFrame& operator[](size_t number) const { return *Find(static_cast<int>(number)); }
+  ImageFrame& operator[](size_t number) {
+    return const_cast<ImageFrame&>(std::as_const(*this)[number]);
+  }
+
+  // Over the frames that are there.
+  std::vector<ImageFrame>::const_iterator begin() const { return frames_.begin(); }
+  std::vector<ImageFrame>::const_iterator end() const { return frames_.end(); }
+
+ private:
+  std::vector<int> numbers_;
+  std::vector<ImageFrame> frames_;
+};
+
 struct ImageSequence {
   std::string name;
   std::vector<ImageCamera> cameras;
-  std::vector<ImageFrame> frames;
+  ImageFrames frames;
+  // Where a camera's image of a frame that is not there would be; empty if all are there.
+  std::function<std::string(int frame, int camera)> image_path;
   Eigen::Vector3d world_down = Eigen::Vector3d::UnitY();  // unit; the world of world_from_body
-  // What a user should know and is no error: frames left out, frames without ground truth.
+  // Where images of one frame differ in time: how far they may, "default" or milliseconds. Frames
+  // count otherwise with another.
+  std::string sync_tolerance;
+  // What a user should know and is no error: frames left out, frames without ground truth, cameras
+  // that are not used, how far the cameras' time stamps are apart.
   std::vector<std::string> notes;
 };
 

@@ -3,20 +3,24 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 #include <system_error>
 
-#include "rigel/problems/images/text_lines.h"
 #include "rigel/problems/kitti_poses.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/problems/printable.h"
+#include "rigel/problems/text_lines.h"
 
 namespace rigel {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDigits = 6;  // of an image's name
+constexpr int kDigits = 6;           // of an image's name
+constexpr int kMaxFrame = 10000000;  // 11 days at 10 Hz
 
 std::string ImageName(int frame) {
   char name[32];
@@ -24,10 +28,14 @@ std::string ImageName(int frame) {
   return name;
 }
 
-// -1 if it is not the name of an image.
+// -1 if it is not the name of an image, kMaxFrame + 1 if its number is beyond the bound.
 int FrameOfImage(const std::string& name) {
-  int frame = -1;
-  std::from_chars(name.data(), name.data() + name.size(), frame);
+  int64_t number = -1;
+  std::from_chars(name.data(), name.data() + name.size(), number);
+  if (number > kMaxFrame) {
+    return name == std::to_string(number) + ".png" ? kMaxFrame + 1 : -1;
+  }
+  const int frame = static_cast<int>(number);
   return frame >= 0 && name == ImageName(frame) ? frame : -1;
 }
 
@@ -41,13 +49,19 @@ bool Exists(const fs::path& path) {
   return fs::exists(path, ignored);
 }
 
-// The highest number of an image, -1 if there is none.
-bool HighestFrame(const fs::path& directory, int* highest, std::string* error) {
-  *highest = -1;
+// The numbers of the images in a camera's folder. False with a message if one is beyond the bound.
+bool AddFrames(const fs::path& directory, std::set<int>* frames, std::string* error) {
   std::error_code code;
   fs::directory_iterator entry(directory, code);
   for (; !code && entry != fs::directory_iterator(); entry.increment(code)) {
-    *highest = std::max(*highest, FrameOfImage(entry->path().filename().string()));
+    const std::string name = entry->path().filename().string();
+    const int frame = FrameOfImage(name);
+    if (frame > kMaxFrame) {
+      *error = PrintablePath((directory / name).string()) + ": expected an image number up to " +
+               std::to_string(kMaxFrame);
+      return false;
+    }
+    if (frame >= 0) frames->insert(frame);
   }
   if (!code) return true;
   *error = PrintablePath(directory.string()) + ": cannot be listed: " + code.message();
@@ -112,7 +126,7 @@ bool ReadCalibration(const std::string& path, const std::array<int, 2>& numbers,
 
 bool ReadTimes(const std::string& path, std::vector<double>* times, std::string* error) {
   std::vector<TextLine> lines;
-  if (!ReadTextLines(path, &lines, error)) return false;
+  if (!ReadFrameLines(path, &lines, error)) return false;
   for (const TextLine& line : lines) {
     double time;
     if (!ParseFinite(line.text, &time)) {
@@ -122,6 +136,20 @@ bool ReadTimes(const std::string& path, std::vector<double>* times, std::string*
     times->push_back(time);
   }
   return true;
+}
+
+// The cameras' folders beside those that are used; empty if there are none.
+std::string Unused(const fs::path& directory, const std::array<int, 2>& used) {
+  constexpr int kCameras = 10;  // of which a folder may be named
+  std::string names;
+  for (int k = 0; k < kCameras; ++k) {
+    const std::string name = "image_" + std::to_string(k);
+    if (k == used[0] || k == used[1] || !IsDirectory(directory / name)) continue;
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  if (names.empty()) return "";
+  return PrintablePath(directory.string()) + ": not used: " + names + "; the rig is image_" +
+         std::to_string(used[0]) + " and image_" + std::to_string(used[1]);
 }
 
 // What a file with a line a frame says about a sequence with more frames; empty if it has enough.
@@ -155,37 +183,40 @@ bool ReadKittiSequence(const std::string& root, const std::string& name, ImageSe
   if (!ReadCalibration((directory / "calib.txt").string(), cameras, &result.cameras, error)) {
     return false;
   }
-  int highest = -1;
+  result.notes.push_back(Unused(directory, cameras));
+  std::set<int> frames;
   for (const int camera : cameras) {
-    int of_camera;
-    if (!HighestFrame(folder(camera), &of_camera, error)) return false;
-    highest = std::max(highest, of_camera);
+    if (!AddFrames(folder(camera), &frames, error)) return false;
   }
-  if (highest < 0) {
+  if (frames.empty()) {
     *error = PrintablePath(folder(cameras[0]).string()) + ": no images (000000.png, ...) in it";
     return false;
   }
-  result.frames.resize(highest + 1);
-  for (int k = 0; k <= highest; ++k) {
-    for (const int camera : cameras) {
-      result.frames[k].images.push_back((folder(camera) / ImageName(k)).string());
-    }
+  const std::array<std::string, 2> folders = {folder(cameras[0]).string(),
+                                              folder(cameras[1]).string()};
+  result.image_path = [folders](int frame, int camera) {
+    return (fs::path(folders[camera]) / ImageName(frame)).string();
+  };
+  for (const int k : frames) {
+    result.frames.Add(k, {{result.image_path(k, 0), result.image_path(k, 1)}, {}, {}});
   }
 
   const std::string times_path = (directory / "times.txt").string();
   if (Exists(times_path)) {
     std::vector<double> times;
     if (!ReadTimes(times_path, &times, error)) return false;
-    const size_t known = std::min(times.size(), result.frames.size());
-    for (size_t k = 0; k < known; ++k) result.frames[k].time = times[k];
+    for (const size_t k : frames) {
+      if (k < times.size()) result.frames[k].time = times[k];
+    }
     result.notes.push_back(TooShort(times_path, times.size(), result.frames.size(), "time"));
   }
   const std::string poses_path = (fs::path(root) / "poses" / (name + ".txt")).string();
   if (Exists(poses_path)) {
     std::vector<Pose> poses;
     if (!ReadKittiPoses(poses_path, &poses, error)) return false;
-    const size_t known = std::min(poses.size(), result.frames.size());
-    for (size_t k = 0; k < known; ++k) result.frames[k].world_from_body = poses[k];
+    for (const size_t k : frames) {
+      if (k < poses.size()) result.frames[k].world_from_body = poses[k];
+    }
     result.notes.push_back(TooShort(poses_path, poses.size(), result.frames.size(), "truth"));
   }
   result.notes.erase(std::remove(result.notes.begin(), result.notes.end(), ""), result.notes.end());

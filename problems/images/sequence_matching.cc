@@ -5,6 +5,7 @@
 #include <exception>
 #include <filesystem>
 #include <initializer_list>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -13,9 +14,10 @@
 
 #include "rigel/problems/csv.h"
 #include "rigel/problems/exception_message.h"
-#include "rigel/problems/images/text_lines.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/parallel.h"
+#include "rigel/problems/printable.h"
+#include "rigel/problems/text_lines.h"
 #include "rigel/problems/whole_file.h"
 
 namespace rigel {
@@ -41,10 +43,6 @@ bool Exists(const std::string& path) {
   return fs::exists(path, ignored);
 }
 
-bool EndsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 // The features of a frame while pairs need them: extracted by the first that asks, forgotten after
 // the last.
 class FrameFeatures {
@@ -57,9 +55,11 @@ class FrameFeatures {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (features_ != nullptr || !missing_.empty() || !errors_.empty()) return features_;
     auto features = std::make_shared<std::vector<ImageFeatures>>(sequence.cameras.size());
+    const ImageFrame* const there = sequence.frames.Find(frame);
     for (size_t k = 0; k < sequence.cameras.size(); ++k) {
       std::string error;
-      const std::string& image = sequence.frames[frame].images[k];
+      const std::string image =
+          there != nullptr ? there->images[k] : sequence.image_path(frame, static_cast<int>(k));
       if (!ExtractFeatures(options, sequence.cameras[k], image, &(*features)[k], &error)) {
         (Exists(image) ? errors_ : missing_).push_back(error);
       }
@@ -85,6 +85,7 @@ class FrameFeatures {
 
 // All of a pair but its matches and the sizes of the images.
 FramePair MakePair(const ImageSequence& sequence, const FrameIndices& indices) {
+  // Both are there: their images were read.
   const ImageFrame& frame1 = sequence.frames[indices.frame1];
   const ImageFrame& frame2 = sequence.frames[indices.frame2];
   FramePair pair;
@@ -141,6 +142,9 @@ std::string SettingsText(const SequenceMatchingOptions& options, const ImageSequ
           any([](const ImageFrame& frame) { return frame.world_from_body.has_value(); });
   text +=
       std::string("times ") + any([](const ImageFrame& frame) { return frame.time.has_value(); });
+  if (!sequence.sync_tolerance.empty()) {
+    text += "sync_tolerance_ms " + sequence.sync_tolerance + "\n";
+  }
   for (size_t k = 0; k < sequence.cameras.size(); ++k) {
     const RigCamera& camera = sequence.cameras[k].camera;
     const PinholeCamera& c = camera.intrinsics;
@@ -167,16 +171,16 @@ bool SameSettings(const fs::path& path, const std::string& text, std::string* er
     return false;
   }
   size_t begin = 0;
-  for (size_t k = 0; begin < text.size(); ++k) {
-    const size_t end = text.find('\n', begin);
+  for (size_t k = 0; begin < text.size() || k < lines.size(); ++k) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
     const std::string now = text.substr(begin, end - begin);
     if (k >= lines.size() || lines[k].text != now) {
       *error = PrintablePath(path.string()) + ": the match files beside it were made with " +
                (k < lines.size() ? Quoted(lines[k].text) : "other settings") + ", this run has " +
-               Quoted(now) + "; name another directory";
+               (now.empty() ? "no such line" : Quoted(now)) + "; name another directory";
       return false;
     }
-    begin = end + 1;
+    begin = std::min(end + 1, text.size());
   }
   return true;
 }
@@ -198,7 +202,7 @@ bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequenc
     const std::string name = entry->path().filename().string();
     std::error_code ignored;
     if (entry->is_directory(ignored)) continue;
-    if (EndsWith(name, kSuffix)) {
+    if (IsMatchFileName(name)) {
       (own.count(name) > 0 ? there : others).insert(name);
     }
   }
@@ -227,7 +231,7 @@ bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequenc
     return false;
   }
   RemoveLeftOvers(directory, [](const std::string& name) {
-    return EndsWith(name, kSuffix) || name == kSettingsName;
+    return IsMatchFileName(name) || name == kSettingsName;
   });
   for (const std::string& name : there) {
     FramePair ignored;
@@ -239,8 +243,9 @@ bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequenc
   return true;
 }
 
+// Those pairs of the range of which a frame is there; *num_pairs is the number of all.
 bool ListPairs(const SequenceMatchingOptions& options, const ImageSequence& sequence,
-               std::vector<FrameIndices>* pairs, std::string* error) {
+               std::vector<FrameIndices>* pairs, int* num_pairs, std::string* error) {
   const int num_frames = static_cast<int>(sequence.frames.size());
   const std::string has = "sequence " + PrintablePath(sequence.name) + " has " +
                           std::to_string(num_frames) + (num_frames == 1 ? " frame" : " frames") +
@@ -252,8 +257,16 @@ bool ListPairs(const SequenceMatchingOptions& options, const ImageSequence& sequ
       return false;
     }
   }
-  for (int k = options.first; k <= last - options.stride; k += options.stride) {
-    pairs->push_back({k, k + options.stride});
+  *num_pairs = (last - options.first) / options.stride;
+  for (const int frame : sequence.frames.numbers()) {
+    if (*num_pairs < 1) break;
+    if (frame < options.first || (frame - options.first) % options.stride != 0) continue;
+    const int before = frame - options.stride, after = frame + options.stride;
+    if (before >= options.first && frame <= last &&
+        (pairs->empty() || pairs->back().frame1 < before)) {
+      pairs->push_back({before, frame});
+    }
+    if (after <= last) pairs->push_back({frame, after});
   }
   if (pairs->empty()) *error = "no pair of frames in the range: " + has;
   return !pairs->empty();
@@ -286,17 +299,22 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
   if (!options.IsValid(error)) return false;
   std::vector<FrameIndices> pairs;
   std::set<std::string> kept;
-  if (!ListPairs(options, sequence, &pairs, error) ||
+  if (!ListPairs(options, sequence, &pairs, &summary->num_pairs, error) ||
       !PrepareDirectory(options, sequence, pairs, directory, &kept, error)) {
     return false;
   }
-  summary->num_pairs = static_cast<int>(pairs.size());
-  for (const auto& [frame, which] :
-       {std::pair(pairs.front().frame1, "first"), std::pair(pairs.back().frame2, "last")}) {
-    const std::vector<std::string>& images = sequence.frames[frame].images;
-    if (std::any_of(images.begin(), images.end(), Exists)) continue;
+  const int end = options.first + summary->num_pairs * options.stride;
+  for (const auto& [frame, which] : {std::pair(options.first, "first"), std::pair(end, "last")}) {
+    const ImageFrame* const there = sequence.frames.Find(frame);
+    if (there != nullptr && std::any_of(there->images.begin(), there->images.end(), Exists))
+      continue;
     summary->notes.push_back("frame " + std::to_string(frame) + ", the " + which +
                              " of the range, has no images");
+  }
+  const int without = summary->num_pairs - static_cast<int>(pairs.size());
+  if (without > 0) {
+    summary->notes.push_back(std::to_string(without) + (without == 1 ? " pair" : " pairs") +
+                             " of the range have no image at all");
   }
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
                              [&](const FrameIndices& p) { return kept.count(p.FileName()) > 0; }),
@@ -305,7 +323,7 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
   const int todo = static_cast<int>(pairs.size());
   begin(todo);
 
-  std::vector<FrameFeatures> frames(sequence.frames.size());
+  std::map<int, FrameFeatures> frames;
   for (const FrameIndices& pair : pairs) {
     frames[pair.frame1].AddUse();
     frames[pair.frame2].AddUse();
@@ -317,8 +335,10 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
     const std::string path = (fs::path(directory) / indices.FileName()).string();
     // Nothing may leave a thread, not even that there is no memory for an image.
     try {
-      const auto features1 = frames[indices.frame1].Get(options.features, sequence, indices.frame1);
-      const auto features2 = frames[indices.frame2].Get(options.features, sequence, indices.frame2);
+      const auto features1 =
+          frames.at(indices.frame1).Get(options.features, sequence, indices.frame1);
+      const auto features2 =
+          frames.at(indices.frame2).Get(options.features, sequence, indices.frame2);
       if (features1 != nullptr && features2 != nullptr) {
         FramePair pair = MakePair(sequence, indices);
         std::string what;
@@ -331,8 +351,8 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
     } catch (const std::exception& exception) {
       errors[k] = PrintablePath(path) + ": not written: " + ExceptionMessage(exception);
     }
-    frames[indices.frame1].Release();
-    frames[indices.frame2].Release();
+    frames.at(indices.frame1).Release();
+    frames.at(indices.frame2).Release();
     step();
   };
   // Neighbours are worked on by one thread, which has extracted the frame that they share; with a
@@ -344,7 +364,7 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
     for (int k = r * run; k < std::min((r + 1) * run, todo); ++k) match(k);
   });
 
-  for (const FrameFeatures& frame : frames) {
+  for (const auto& [number, frame] : frames) {
     summary->missing.insert(summary->missing.end(), frame.missing().begin(), frame.missing().end());
     summary->errors.insert(summary->errors.end(), frame.errors().begin(), frame.errors().end());
   }

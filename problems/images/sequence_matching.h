@@ -28,11 +28,12 @@ struct SequenceMatchingSummary {
   int num_pairs = 0;  // those of the range
   int written = 0;
   int kept = 0;  // were there already
-  // One line an image that is not there, an image that could not be used or a file that could not
+  // One line an image that is not there (of pairs that have none at all there is only their number,
+  // in `notes`), an image that could not be used or a file that could not
   // be written, in order. The pairs that they touch are neither written nor kept; all others are.
   std::vector<std::string> missing;
   std::vector<std::string> errors;
-  // The ends of the range that have no image at all.
+  // The ends of the range that have no image at all, and how many pairs have none.
   std::vector<std::string> notes;
 };
 

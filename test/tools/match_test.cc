@@ -200,10 +200,29 @@ TEST_F(MatchTest, ManyMissingImagesAreFewLines) {
   const Outcome run = Kitti("out", {"--kitti_root=" + Path("kitti")});
   EXPECT_EXIT_CODE(run, 1);
   const auto absent = HasSubstr(".png: cannot be opened: No such file or directory");
-  EXPECT_THAT(Lines(run.err),
-              ElementsAre("frame 0, the first of the range, has no images", absent, absent, absent,
+  EXPECT_THAT(
+      Lines(run.err),
+      ElementsAre("frame 0, the first of the range, has no images",
+                  "2 pairs of the range have no image at all", absent, absent, absent,
+                  HasSubstr("wrote 0 match files to " + Path("out") + "; 3 could not be made")));
+  // Numbers that are left out, a million of them: their pairs are not even gone through.
+  for (const char* camera : {"image_0", "image_1"}) {
+    const std::string from = Data() + "/kitti/sequences/06/" + camera;
+    const std::string to = Path(std::string("kitti/sequences/06/") + camera);
+    fs::copy(from + "/000000.png", to + "/000000.png");
+    fs::copy(from + "/000001.png", to + "/000001.png");
+    fs::copy(from + "/000003.png", to + "/1000000.png");
+  }
+  const Outcome gap = Kitti("gap", {"--kitti_root=" + Path("kitti")});
+  EXPECT_EXIT_CODE(gap, 1);
+  EXPECT_THAT(Lines(gap.err),
+              ElementsAre(HasSubstr("times.txt: 4 lines for 1000001 frames"),
+                          HasSubstr("06.txt: 4 lines for 1000001 frames"),
+                          "999995 pairs of the range have no image at all", absent, absent, absent,
                           absent, absent, "and 2 more images that cannot be opened",
-                          HasSubstr("wrote 0 match files")));
+                          HasSubstr("wrote 1 match files to " + Path("gap") +
+                                    "; 999999 could not be made")));
+  EXPECT_TRUE(fs::exists(Path("gap/000000-000001.matches")));
 }
 
 TEST_F(MatchTest, ThreadsAndRepetitionGiveTheSameBytes) {

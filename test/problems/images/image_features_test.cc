@@ -295,6 +295,18 @@ TEST_F(ImageFeaturesTest, WhatIsNoImageOfTheCameraIsTold) {
   ASSERT_TRUE(cv::imwrite(path, Scene().Render(Undistorted(), PlaneScene::WorldFromBody(0))));
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
   EXPECT_THAT(error_of(path), HasSubstr("the image is cut off"));
+  // Its head announces more than is decoded: width and height at bytes 16 and 20, the end in place.
+  const std::string head("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
+  const std::string end = "IEND\xae\x42\x60\x82";
+  WriteFile(path, head + std::string("\0\0\x4e\x20\0\0\x4e\x20", 8) + end);  // 20000 x 20000
+  EXPECT_THAT(error_of(path), HasSubstr("400000000 pixels, expected at most 200 million"));
+  WriteFile(path,
+            std::string("\xff\xd8\xff\xe0\0\x04xx\xff\xc0\0\x0b\x08\xff\xff\xff\xff\x01", 19));
+  EXPECT_THAT(error_of(path), HasSubstr("4294836225 pixels, expected at most 200 million"));
+  // A file of no end is not read to it.
+  WriteFile(path, "");
+  std::filesystem::resize_file(path, uintmax_t{1} << 40);
+  EXPECT_THAT(error_of(path), HasSubstr("more than 1 GiB"));
 }
 
 }  // namespace
