@@ -1,9 +1,15 @@
 // rigel_compare as a test of recordings: bounds, a baseline and exit code 3.
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <sstream>
+
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -105,6 +111,38 @@ TEST_F(BoundsTest, WrongValuesAreUsageErrorsBeforeAnyFileIsRead) {
       Compare({"--baseline=" + Path("report.json"), "--json=" + Path("in/../report.json")});
   EXPECT_EXIT_CODE(over, 2);
   EXPECT_EQ(ReadText(Path("report.json")), "{}");
+}
+
+// The commands of docs/regression.md, in their order: lines of code that begin with a program's
+// name, each with the exit code that stands behind it.
+TEST_F(BoundsTest, TheDocumentationDoesWhatItSays) {
+  const fs::path before = fs::current_path();
+  fs::current_path(Path("in"));
+  std::map<int, int> runs;
+  std::string command;
+  for (const std::string& line : Lines(ReadText(RIGEL_DOCS_DIR "/regression.md"))) {
+    if (command.empty() && line.rfind("    rigel_", 0) != 0) continue;
+    command += line;
+    if (command.back() == '\\') {
+      command.back() = ' ';
+      continue;
+    }
+    int code = 0;
+    const size_t comment = command.find("# exit code ");
+    if (comment != std::string::npos) {
+      code = std::stoi(command.substr(comment + 12));
+      command.resize(comment);
+    }
+    std::istringstream words(command);
+    std::string program;
+    words >> program;
+    Args args{std::istream_iterator<std::string>(words), {}};
+    EXPECT_EXIT_CODE(RunTool(program.substr(6), args), code);
+    ++runs[code];
+    command.clear();
+  }
+  fs::current_path(before);
+  EXPECT_EQ(runs, (std::map<int, int>{{0, 4}, {3, 2}}));
 }
 
 }  // namespace
