@@ -340,7 +340,7 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
   }
   Pose refined;
   parameterization.Evaluate(parameters.data(), &refined, nullptr);
-  if (!result.usable || !refined.AllFinite()) {
+  if (!result.usable || !refined.AllFinite() || !std::isfinite(result.final_cost)) {
     return Fail(Termination::kDegenerate, "the least-squares solver found no usable solution");
   }
   if (summary_.initial_cost < 0) summary_.initial_cost = result.initial_cost;

@@ -1,6 +1,8 @@
 // EstimateMotion() and Refine() with options, pair and prior made from the bytes: sensible values,
 // and any double, any integer, any enum value and cameras that are not there among them. What comes
 // back says that it failed, or holds a finite motion.
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -158,6 +160,19 @@ rigel::EstimateOptions MakeOptions(Bytes* bytes) {
   return options;
 }
 
+// What came after the first seeds were made: from the last bytes, so that these stay what they are.
+constexpr size_t kTail = 16;
+void AddLaterOptions(Bytes* bytes, rigel::EstimateOptions* options, rigel::MotionPrior* prior) {
+  static const std::atomic<bool> cancelled = true;
+  if (bytes->Chance(40)) options->time_limit = bytes->Double(0, 0.01);
+  if (bytes->Chance(8)) options->cancel = &cancelled;
+  if (bytes->Chance(40)) options->refine.time_limit = bytes->Double(0, 0.01);
+  if (bytes->Chance(8)) options->refine.cancel = &cancelled;
+  if (bytes->Chance(40)) options->refine.num_tries = bytes->Double(0, 1e8);
+  if (bytes->Chance(40)) options->refine.threshold_px = 0.0;  // auto
+  if (bytes->Chance(100)) prior->forward = Direction(bytes);
+}
+
 void RequireSound(const rigel::RefineSummary& summary, size_t num_matches) {
   Require(!summary.message.empty(), "the refinement says what it did");
   summary.BriefReport();
@@ -173,12 +188,15 @@ void RequireSound(const rigel::RefineSummary& summary, size_t num_matches) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  Bytes bytes(data, size);
-  const rigel::EstimateOptions options = MakeOptions(&bytes);
+  const size_t tail_size = std::min(kTail, size / 4);
+  Bytes bytes(data, size - tail_size);
+  Bytes tail(data + (size - tail_size), tail_size);
+  rigel::EstimateOptions options = MakeOptions(&bytes);
   rigel::FramePair pair;
   pair.rig = MakeRig(&bytes);
   const rigel::Pose motion = MakeMotion(&bytes);
   pair.prior = MakePrior(&bytes);
+  AddLaterOptions(&tail, &options, &pair.prior);
   if (bytes.Chance(40)) pair.noise_px = bytes.Double(0, 2);
   if (bytes.Chance(40)) pair.time1 = bytes.AnyDouble();
   if (bytes.Chance(40)) pair.time2 = bytes.AnyDouble();
