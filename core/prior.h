@@ -24,6 +24,9 @@ struct MotionPrior {
   std::optional<Eigen::Vector3d> normal;
   std::optional<double> normal_sigma;
 
+  // Where the vehicle's front is in the body frame: for Ackermann motion.
+  std::optional<Eigen::Vector3d> forward;
+
   // |t| from odometry, metres, and its standard deviation.
   std::optional<double> distance;
   double distance_sigma = 0.0;

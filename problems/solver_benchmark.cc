@@ -104,6 +104,7 @@ std::vector<Problem> MakeProblems(const SolverInfo& solver, const SolverBenchmar
       truth.t = -(RotationY(DegToRad(0.5 * options.rotation_deg)) * Eigen::Vector3d::UnitZ());
       if (!MakeScenePair(scene, k, truth, &problem.pair, &error)) continue;
       problem.pair.prior.normal = Eigen::Vector3d::UnitY();
+      problem.pair.prior.forward = Eigen::Vector3d::UnitZ();
     }
     if (!MakeAlignment(problem.pair.prior, solver.prior, &alignment, &error)) continue;
     problem.sample.resize(solver.sample_size);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "rigel/core/body_axes.h"
 #include "rigel/minimal/prepared_matches.h"
 #include "rigel/minimal/prosac.h"
 #include "rigel/refine/sign_and_scale.h"
@@ -187,6 +188,17 @@ MotionEstimate Refused(EstimateStatus status, const std::string& message) {
   return estimate;
 }
 
+// Ackermann motion has a front: that of the rig where the prior states none.
+MotionPrior WithForward(const FramePair& pair) {
+  MotionPrior prior = pair.prior;
+  BodyAxes axes;
+  std::string error;
+  if (!prior.forward && ResolveBodyAxes(pair.rig, {}, {}, &axes, &error)) {
+    prior.forward = axes.forward;
+  }
+  return prior;
+}
+
 }  // namespace
 
 const char* EstimateStatusName(EstimateStatus status) {
@@ -252,7 +264,7 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
   const SolverInfo* solver = nullptr;
   for (const SolverInfo* candidate : solvers) {
     Alignment alignment;
-    if (!MakeAlignment(pair.prior, candidate->prior, &alignment, &error)) {
+    if (!MakeAlignment(WithForward(pair), candidate->prior, &alignment, &error)) {
       return Refused(EstimateStatus::kInvalidInput, options.solver + ": " + error);
     }
     if (num_matches < candidate->sample_size) {

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <map>
 #include <sstream>
 
 #include <gflags/gflags.h>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/body_axes.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/problems/message_groups.h"
 #include "rigel/refine/solver_choice.h"
 
 DEFINE_string(
@@ -20,11 +23,20 @@ DEFINE_string(use, "all",
 DEFINE_string(
     prior, "file",
     "where the motion prior comes from: file, its lines; body, gravity, axis and normal are "
-    "the body's Y (no sensor at all); truth, exact, from the truth line");
+    "the body's down, see --down (no sensor at all); truth, exact, from the truth line");
+DEFINE_string(
+    down, "",
+    "which way is down in the body frame: +x, -x, +y, -y, +z, -z or three numbers x,y,z; if empty "
+    "the body axis nearest to the mean of the cameras' down directions, which is told");
+DEFINE_string(
+    forward, "",
+    "which way the vehicle's front is in the body frame, for 2pt-ackermann and the error of "
+    "--prior_noise_axis=roll: as --down; if empty the files' 'forward' line, else as the cameras "
+    "look if they agree, else +x where -z is down, +z where +y is down");
 DEFINE_double(prior_noise_deg, 0,
               "error of exactly that angle on the prior, its sign random per pair");
 DEFINE_string(prior_noise_axis, "pitch",
-              "the error turns about: pitch (body X), roll (Z) or random");
+              "the error turns about: pitch (the body's right), roll (its forward) or random");
 DEFINE_double(prior_sigma_deg, 0,
               "the prior's stated 1-sigma for --use_prior_in_refine; 0: as in the file");
 DEFINE_bool(use_prior_in_refine, false, "weigh the prior by its sigma in the refinement");
@@ -92,6 +104,25 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
   }
   if (!ParsePriorNoiseAxis(FLAGS_prior_noise_axis, &options->prior.noise_axis)) {
     return wrong("prior_noise_axis", FLAGS_prior_noise_axis, "pitch, roll or random");
+  }
+  const auto direction = [&](const std::string& flag, const std::string& value,
+                             std::optional<Eigen::Vector3d>* stated) {
+    if (value.empty()) return true;
+    Eigen::Vector3d read;
+    if (!ParseDirection(value, &read)) {
+      return wrong(flag, value, "+x, -x, +y, -y, +z, -z or three numbers x,y,z");
+    }
+    *stated = read;
+    return true;
+  };
+  BodyAxes axes;
+  if (!direction("down", FLAGS_down, &options->prior.down) ||
+      !direction("forward", FLAGS_forward, &options->prior.forward)) {
+    return false;
+  }
+  if (!ResolveBodyAxes(Rig(), options->prior.down, options->prior.forward, &axes, error)) {
+    *error = "--down and --forward: " + *error;
+    return false;
   }
   if (!std::isfinite(FLAGS_prior_noise_deg) || std::abs(FLAGS_prior_noise_deg) > 180) {
     return wrong("prior_noise_deg", Text(FLAGS_prior_noise_deg), "-180 to 180");
@@ -215,6 +246,47 @@ void ReportUnweighedPriors(const ComparisonOptions& options,
             << pairs.size() << " pairs, it is not weighed there; state --prior_sigma_deg\n";
 }
 
+void ReportSuggestedAxes(const ComparisonOptions& options, const std::vector<std::string>& solvers,
+                         const std::vector<AppliedAxes>& applied) {
+  // More than a camera is tilted on a vehicle.
+  constexpr double kFarOffDeg = 25.0;
+  const bool uses_forward =
+      std::count(solvers.begin(), solvers.end(), "2pt-ackermann") > 0 ||
+      (options.prior.noise != 0.0 && options.prior.noise_axis != PriorNoiseAxis::kRandom);
+  std::map<std::string, int> counts;
+  double off_deg = 0.0;
+  for (const AppliedAxes& pair : applied) {
+    std::string text;
+    if (pair.down_suggested) {
+      text = "--down=" + DirectionText(pair.axes.down);
+      off_deg = std::max(off_deg, RadToDeg(pair.cameras_off_down));
+    }
+    if (pair.forward_suggested && uses_forward) {
+      text += (text.empty() ? "--forward=" : " --forward=") + DirectionText(pair.axes.forward);
+    }
+    if (!text.empty()) ++counts[text];
+  }
+  if (counts.empty()) return;
+  std::string line;
+  for (const auto& [text, count] : counts) {
+    line += (line.empty() ? "" : ", ") + text;
+    if (counts.size() > 1)
+      line += " in " + std::to_string(count) + (count == 1 ? " file" : " files");
+  }
+  line += counts.size() > 1 ? ": taken from the cameras of the rigs"
+                            : ": taken from the cameras of the rig";
+  if (off_deg > kFarOffDeg) {
+    line += ", whose mean down is " + std::to_string(static_cast<int>(std::lround(off_deg))) +
+            " degrees off it; state it if it is another";
+  }
+  std::cerr << line << "\n";
+}
+
+void ReportGrouped(const std::vector<std::string>& messages,
+                   const std::vector<std::string>& files) {
+  for (const std::string& line : GroupMessages(messages, files)) std::cerr << line << "\n";
+}
+
 std::string FailureMessage(const FramePair& pair, const std::string& solver,
                            const std::string& message) {
   // Some messages name the solver themselves.
@@ -226,7 +298,7 @@ std::string FailureMessage(const FramePair& pair, const std::string& solver,
                                   ? "'gravity1' and 'gravity2' lines"
                               : info->prior == PriorKind::kPlanar ? "a 'normal' line"
                                                                   : "an 'axis' line";
-    text += "; add " + lines + " to the file or use --prior=body";
+    text += "; add " + lines + " to the file, or use --prior=body or the solver auto";
   }
   return text;
 }

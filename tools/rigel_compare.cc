@@ -88,6 +88,17 @@ bool Write(ComparisonReport* report, bool by_sequence) {
   return ok;
 }
 
+// Whether any solver has a motion of any pair. Says on stderr if not.
+bool AnyMotion(const ComparisonReport& report) {
+  for (const SolverResults& solver : report.solvers) {
+    for (const PairResult& r : solver.pairs) {
+      if (!r.failed || r.status == EstimateStatus::kNotRefined) return true;
+    }
+  }
+  std::cerr << "no pair has a motion\n";
+  return false;
+}
+
 int Merge() {
   for (const std::string& flag : GivenFlags()) {
     const std::vector<std::string> output = {"csv", "json", "merge", "no_times", "per_pair"};
@@ -116,7 +127,7 @@ int Merge() {
   const std::pair<std::string, std::string> by_sequence("by", "sequence");
   const bool by =
       std::find(whole.options.begin(), whole.options.end(), by_sequence) != whole.options.end();
-  return Write(&whole, by) ? kExitDone : kExitFailed;
+  return Write(&whole, by) && AnyMotion(whole) ? kExitDone : kExitFailed;
 }
 
 int Run() {
@@ -152,7 +163,12 @@ int Run() {
     comparison = CompareFiles(options, input.paths, input.first, [&] { progress.Step(); });
   }
   for (const std::string& message : comparison.errors) std::cerr << PrintablePath(message) << "\n";
-  bool ok = input.all_there && comparison.errors.empty();
+  std::vector<std::string> without_truth;
+  for (const std::string& message : comparison.without_truth) {
+    without_truth.push_back(PrintablePath(message));
+  }
+  ReportGrouped(without_truth, input.paths);
+  bool ok = input.all_there && comparison.errors.empty() && without_truth.empty();
   // A shard may have nothing to report, the whole may not.
   if (comparison.pairs.empty() && !input.shard) return kExitFailed;
   if (comparison.solvers.empty()) {
@@ -161,13 +177,16 @@ int Run() {
   }
   std::vector<std::string> solvers;
   for (const SolverResults& results : comparison.solvers) solvers.push_back(results.solver);
+  ReportSuggestedAxes(options, solvers, comparison.axes);
   ReportUnweighedPriors(options, solvers, comparison.pairs);
   for (const SolverResults& results : comparison.solvers) {
+    std::vector<std::string> failures;
     for (size_t k = 0; k < results.pairs.size(); ++k) {
       if (!results.pairs[k].failed) continue;
-      std::cerr << FailureMessage(comparison.pairs[k], results.solver, results.pairs[k].message)
-                << "\n";
+      failures.push_back(
+          FailureMessage(comparison.pairs[k], results.solver, results.pairs[k].message));
     }
+    ReportGrouped(failures, input.paths);
   }
 
   ComparisonReport report;
@@ -178,6 +197,8 @@ int Run() {
   report.shard = input.shard;
   report.num_files = input.total;
   ok = Write(&report, FLAGS_by == "sequence") && ok;
+  // Of the whole, not of a part.
+  ok = (input.shard || AnyMotion(report)) && ok;
   return ok ? kExitDone : kExitFailed;
 }
 

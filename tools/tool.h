@@ -1,7 +1,7 @@
 // What the rigel_* programs share: flags, exit codes, output.
 //
-// Exit codes: 0 done; 1 a file could not be read or written, nothing to read, or no truth where it
-// is needed; 2 a wrong flag or value. Results go to stdout, talk to stderr.
+// Exit codes: 0 done; 1 a file could not be read or written, nothing to read, no pair with a motion,
+// or no truth where it is needed; 2 a wrong flag or value. Results go to stdout, talk to stderr.
 #ifndef RIGEL_TOOLS_TOOL_H_
 #define RIGEL_TOOLS_TOOL_H_
 
