@@ -14,7 +14,7 @@ bool UnitDirection(const std::optional<Eigen::Vector3d>& v, const char* name, Ei
     *error = std::string("the prior has no ") + name;
     return false;
   }
-  if (!(std::abs(v->norm() - 1.0) < 1e-3)) {
+  if (!(std::abs(v->norm() - 1.0) < kMaxUnitError)) {
     *error = std::string("the prior's ") + name + " is not a unit vector";
     return false;
   }

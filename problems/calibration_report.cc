@@ -8,6 +8,8 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/csv.h"
+#include "rigel/problems/printable.h"
+#include "rigel/problems/report_json.h"
 #include "rigel/problems/table.h"
 
 namespace rigel {
@@ -104,8 +106,7 @@ std::string CalibrationText(const CalibrationReport& report) {
 }
 
 std::string CalibrationJson(const CalibrationReport& report) {
-  Json json;
-  json["format"] = "rigel-prior-calibration 1";
+  Json json = NewReport("rigel-prior-calibration 1");
   json["options"] = Json::object();
   for (const auto& [name, value] : report.options) json["options"][name] = value;
   json["pairs"] = report.pairs;
@@ -144,7 +145,7 @@ std::string CalibrationJson(const CalibrationReport& report) {
     }
     json["gravity"] = gravity;
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return PrintableJson(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 std::map<std::string, std::string> PlaneLines(const PlaneCalibration& plane, bool normal,

@@ -74,7 +74,7 @@ bool ExperimentStore::Read(const ExperimentPlan& plan, const std::string& text,
   } else if (line + "\n" != wanted) {
     *error = PrintablePath(path_) +
              ":1: of another run; resume it with its own flags or name another directory\n" +
-             "  there: " + line.substr(0, 400) +
+             "  there: " + PrintablePath(line.substr(0, 400)) +
              "\n  here:  " + wanted.substr(0, wanted.size() - 1);
     return false;
   }

@@ -57,12 +57,6 @@ inline constexpr std::array<Keyword, kNumKeywords> kKeywords = {{
 
 bool IsControl(char c);
 
-// As two hexadecimal digits, "\x1b".
-void AppendHex(char c, std::string* out);
-
-// A word of the file for a message: quoted, short, and printable even if the file is rubbish.
-std::string Quote(std::string_view word);
-
 // False if the word is not a finite number.
 bool ParseNumber(std::string_view word, double* value);
 

@@ -14,6 +14,7 @@
 #include "rigel/core/angles.h"
 #include "rigel/core/metrics.h"
 #include "rigel/core/random.h"
+#include "rigel/problems/report_json.h"
 #include "rigel/problems/statistics.h"
 #include "rigel/problems/synthetic.h"
 #include "rigel/problems/table.h"
@@ -263,8 +264,7 @@ std::string SolverBenchmarkTable(const std::vector<SolverBenchmarkRow>& rows) {
 
 std::string SolverBenchmarkJson(const std::vector<SolverBenchmarkRow>& rows,
                                 const SolverBenchmarkOptions& options, double reference_us) {
-  nlohmann::ordered_json report;
-  report["format"] = "rigel-benchmark 1";
+  nlohmann::ordered_json report = NewReport("rigel-benchmark 1");
   report["options"] = {{"num_cameras", options.num_cameras},
                        {"trials", options.trials},
                        {"rotation_deg", options.rotation_deg},

@@ -1,6 +1,7 @@
 #include "rigel/tools/estimation_flags.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <iostream>
 #include <map>
@@ -10,14 +11,16 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/core/body_axes.h"
+#include "rigel/core/pixel_unit.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/message_groups.h"
 #include "rigel/refine/solver_choice.h"
+#include "rigel/tools/tool.h"
 
 DEFINE_string(
     matches, "",
-    "match files and directories of *.matches, comma separated; a comma in a path cannot be "
-    "passed");
+    "match files (*.matches, *.matches.gz) and directories of them, comma separated; - is stdin; a "
+    "comma in a path cannot be passed");
 DEFINE_string(use, "all",
               "which matches are used: all, intra (same camera at both times) or inter");
 DEFINE_string(
@@ -55,8 +58,9 @@ DEFINE_string(residual, "sampson",
               "intra-camera matches and a free scale it collapses to zero motion)");
 DEFINE_string(loss, "cauchy",
               "robust loss of the refinement: none, huber, cauchy, tukey, truncated");
-DEFINE_double(threshold_px, 1.5,
-              "inlier threshold on the Sampson error; 3 sigma of the noise is best");
+DEFINE_string(threshold_px, "auto",
+              "inlier threshold on the Sampson error; 3 sigma of the noise is best. auto: 1.5, or "
+              "1/300 of the shortest focal length where that is less");
 DEFINE_double(confidence, 0.9999,
               "RANSAC stops when a sample of inliers was drawn with this probability");
 DEFINE_int32(max_iterations, 10000, "largest number of RANSAC iterations");
@@ -78,6 +82,18 @@ std::string Text(double value) {
   return text.str();
 }
 
+// The whole of `text` as a positive finite number.
+bool ParsePositive(const std::string& text, double* value) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || !(number > 0) ||
+      !std::isfinite(number)) {
+    return false;
+  }
+  *value = number;
+  return true;
+}
+
 const std::optional<double>& SigmaOf(const MotionPrior& prior, PriorKind kind) {
   if (kind == PriorKind::kVertical) return prior.gravity_sigma;
   return kind == PriorKind::kPlanar ? prior.normal_sigma : prior.axis_sigma;
@@ -95,6 +111,10 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
   if (FLAGS_matches.empty()) {
     *error = "--matches is missing: name match files or directories";
     return false;
+  }
+  const std::vector<std::string> items = SplitCommas(FLAGS_matches);
+  if (std::count(items.begin(), items.end(), "-") > 1) {
+    return wrong("matches", FLAGS_matches, "'-' once: stdin can be read but once");
   }
   if (!ParseMatchUse(FLAGS_use, &options->use)) {
     return wrong("use", FLAGS_use, "all, intra or inter");
@@ -165,7 +185,11 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
   estimate.refine.scale = FLAGS_fix_translation_norm ? ScaleMode::kFixed : ScaleMode::kAuto;
   options->prior.true_distance = FLAGS_fix_translation_norm;
   options->use_stated_noise = !FLAGS_estimate_noise;
-  estimate.ransac.threshold_px = FLAGS_threshold_px;
+  if (FLAGS_threshold_px == "auto") {
+    estimate.ransac.threshold_px = kAutoThresholdPx;
+  } else if (!ParsePositive(FLAGS_threshold_px, &estimate.ransac.threshold_px)) {
+    return wrong("threshold_px", FLAGS_threshold_px, "auto or a positive number");
+  }
   estimate.ransac.confidence = FLAGS_confidence;
   estimate.ransac.max_iterations = FLAGS_max_iterations;
   estimate.ransac.seed = FLAGS_seed;
@@ -197,9 +221,10 @@ bool CanRefine(const EstimateOptions& estimate, const std::string& solver, std::
 
 InputFiles ListInput() {
   InputFiles input;
-  std::vector<std::string> errors;
-  input.paths = ListMatchFiles(FLAGS_matches, &errors);
+  std::vector<std::string> errors, notes;
+  input.paths = ListMatchFiles(FLAGS_matches, &errors, &notes);
   input.all_there = errors.empty();
+  for (const std::string& note : notes) std::cerr << note << "\n";
   for (const std::string& error : errors) std::cerr << error << "\n";
   input.all = input.paths;
   input.total = static_cast<int>(input.all.size());

@@ -144,7 +144,9 @@ std::set<std::string> OtherMatchFiles(const std::set<std::string>& targets, std:
   for (; !*code && entry != fs::directory_iterator(); entry.increment(*code)) {
     const std::string path = entry->path().string();
     std::error_code ignored;
-    if (entry->path().extension() != ".matches" || entry->is_directory(ignored)) continue;
+    if (!IsMatchFileName(entry->path().filename().string()) || entry->is_directory(ignored)) {
+      continue;
+    }
     const bool own = targets.count((fs::path(FLAGS_output) / entry->path().filename()).string()) &&
                      !FindHeaderComment(path, "# rigel_calibrate_prior").empty();
     if (!own) others.insert(entry->path().filename().string());
@@ -264,7 +266,7 @@ bool WriteFiles(const CalibrationReport& report, const Lines& lines,
     if (report.gravity) changed.merge(GravityLines(*report.gravity, pairs[k].prior));
     std::string text;
     if (!ReadWithHeaderLines(paths[k], changed, &text, &error) ||
-        !files.Add(targets[k], text, &error)) {
+        !files.Add(targets[k], MatchFileBytes(targets[k], text), &error)) {
       std::cerr << error << "; no file is written\n";
       return false;
     }
@@ -308,6 +310,11 @@ int Run() {
     return UsageError("--shard: a calibration is of all files");
   }
   const bool writes = FLAGS_in_place || !FLAGS_output.empty();
+  const std::vector<std::string> items = SplitCommas(FLAGS_matches);
+  if (writes && std::count(items.begin(), items.end(), "-") > 0) {
+    return UsageError("--matches=" + FLAGS_matches + ": stdin has no file whose lines could be " +
+                      "written; without --in_place and --output it is read");
+  }
 
   const InputFiles input = ListInput();
   if (!OutputsDiffer({{"json", FLAGS_json}}, &error) ||

@@ -18,7 +18,7 @@
 #include "rigel/tools/tool.h"
 
 DEFINE_string(
-    solver, "4pt-axis",
+    solver, "auto",
     "name of the minimal solver of RANSAC, or auto: the most constrained one that the priors "
     "allow, others after it while the result is doubtful");
 DEFINE_string(json, "", "write the motions (format rigel-estimate 1) to this file; - is stdout");
@@ -46,7 +46,7 @@ namespace {
 constexpr char kUsage[] =
     "rigel_estimate: the motion (R, t), X_2 = R X_1 + t, of each match file.\n"
     "\n"
-    "  rigel_estimate --matches=DIR --solver=4pt-axis --prior=body --json=motions.json\n"
+    "  rigel_estimate --matches=DIR --prior=body --json=motions.json\n"
     "\n"
     "RANSAC with a minimal solver makes hypotheses, a refinement makes them accurate. The table\n"
     "gives the rotation angle, the direction of translation and |t| with their standard "
@@ -257,6 +257,7 @@ int Run() {
     ok = false;
   }
 
+  for (const std::string& line : RigDoubtLines(report)) std::cerr << line << "\n";
   report.refined = estimate.refine_motion;
   // An empty shard has nothing to chain, and nothing is wrong with it.
   if (Chained() && !report.pairs.empty()) ok = Chain(positions, &report) && ok;

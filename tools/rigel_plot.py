@@ -23,9 +23,12 @@ import os
 import re
 import stat
 import sys
+import unicodedata
 import zlib
 
 NO_MATPLOTLIB = 3
+# Marks that turn the direction of writing, and the byte order mark.
+MISLEADING = "\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\ufeff"
 GUARD = "RIGEL_PLOT_SECOND_PYTHON"
 
 try:
@@ -82,6 +85,18 @@ BOUND_LABEL = "Cramér-Rao bound (as a median)"
 
 class Bad(Exception):
     """A message for the user."""
+
+
+def printable(text):
+    """Text for a terminal: what it would obey in hexadecimal, as Rigel's programs show it."""
+    kept = []
+    for character in text:
+        if unicodedata.category(character) in ("Cc", "Cs", "Zl", "Zp") or character in MISLEADING:
+            raw = character.encode("utf-8", "surrogateescape")
+            kept.append("".join(f"\\x{byte:02x}" for byte in raw))
+        else:
+            kept.append(character)
+    return "".join(kept)
 
 
 def style_of(solver):
@@ -425,18 +440,25 @@ def read_trajectory(path):
     the (down, forward) of rigel_estimate's comment in it or None."""
     axes = None
     try:
-        with open(path, encoding="utf-8") as file:
-            lines = []
-            for number, line in enumerate(file, 1):
-                said = re.match(r"# body: down (\S+), forward (\S+)$", line)
-                if said and direction(said[1]) and direction(said[2]):
-                    axes = direction(said[1]), direction(said[2])
-                if line.strip() and not line.startswith("#"):
-                    lines.append((number, line.split()))
+        # Not splitlines(), which breaks at more than line ends.
+        with open(path, encoding="utf-8-sig") as file:
+            lines = file.read().rstrip().split("\n")
     except (OSError, UnicodeDecodeError) as error:
         raise Bad(f"{path}: cannot be read: {error}") from error
     points, turns = [], []
-    for number, words in lines:
+    skipped = 0  # the first line that is blank or a comment
+    kitti = 0  # the first line that says no time: line k is that of frame k
+    for number, line in enumerate(lines, 1):
+        said = re.match(r"# body: down (\S+), forward (\S+)$", line)
+        if said and direction(said[1]) and direction(said[2]):
+            axes = direction(said[1]), direction(said[2])
+            continue
+        words = line.split()
+        if not words or line.startswith("#"):
+            skipped = skipped or number
+            continue
+        if len(words) == 12:
+            kitti = kitti or number
         if len(words) not in (8, 12):
             raise Bad(f"{path}:{number}: {len(words)} numbers, expected 12 (KITTI) or 8 (TUM)")
         try:
@@ -453,6 +475,9 @@ def read_trajectory(path):
             turns.append(axes_of_quaternion(*values[4:8]))
     if not points:
         raise Bad(f"{path}: there is no pose in it")
+    if kitti and skipped:
+        raise Bad(f"{path}:{skipped}: a blank line or a comment, expected that of frame "
+                  f"{skipped - 1}: every line is that of a frame")
     return points, turns, axes
 
 
@@ -618,7 +643,7 @@ def save(figure, directory, name, dpi):
 
 def read_json(path):
     try:
-        with open(path, encoding="utf-8") as file:
+        with open(path, encoding="utf-8-sig") as file:
             value = json.load(file)
     except (OSError, ValueError) as error:
         raise Bad(f"{path}: cannot be read: {error}") from error
@@ -715,7 +740,7 @@ def inputs_of(paths):
                 if report.get("format") not in FORMATS:
                     raise Bad(f"{file}: its format is {report.get('format')!r}")
             except Bad as error:
-                print(f"rigel_plot.py: left out: {error}", file=sys.stderr)
+                print(printable(f"rigel_plot.py: left out: {error}"), file=sys.stderr)
                 continue
             reports.append((file, report))
         if len(reports) == before:
@@ -768,8 +793,8 @@ def run(arguments):
                             arguments.forward), "Trajectory")
     if arguments.html:
         write_html(arguments.html, sections["claims"] + sections["other"])
-        print(f"wrote {arguments.html}", file=sys.stderr)
-    print(f"wrote {written} figures (PNG and SVG) to {directory}", file=sys.stderr)
+        print(printable(f"wrote {arguments.html}"), file=sys.stderr)
+    print(printable(f"wrote {written} figures (PNG and SVG) to {directory}"), file=sys.stderr)
 
 
 def main():
@@ -810,7 +835,7 @@ def main():
     try:
         run(arguments)
     except Bad as error:
-        print(f"rigel_plot.py: {error}", file=sys.stderr)
+        print(printable(f"rigel_plot.py: {error}"), file=sys.stderr)
         return 1
     return 0
 

@@ -23,10 +23,11 @@
 
 #include "rigel/problems/csv.h"
 #include "rigel/problems/exception_message.h"
+#include "rigel/problems/input_file.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/output_place.h"
+#include "rigel/problems/version.h"
 #include "rigel/problems/whole_file.h"
-#include "rigel/tools/version.h"
 
 // gflags leaves the process through this pointer, with code 1; it is not in a public header.
 namespace google {
@@ -148,7 +149,8 @@ void PrintHelp(const std::string& usage) {
     }
     flush();
   }
-  std::cout << "\nExit code: 0 done, 1 failed, 2 wrong flag.\n";
+  std::cout
+      << "\nExit code: 0 done, 1 failed, 2 wrong flag, 3 a bound that a flag set was missed.\n";
 }
 
 }  // namespace
@@ -177,7 +179,7 @@ void ParseFlags(const std::string& usage, int* argc, char*** argv) {
   FLAGS_minloglevel = google::GLOG_FATAL;
   google::InitGoogleLogging((*argv)[0]);
   gflags::SetUsageMessage(usage);
-  gflags::SetVersionString(RIGEL_VERSION);
+  gflags::SetVersionString(RigelVersion());
   // The name of the program, which --version prints before the flags are parsed.
   gflags::SetArgv(*argc, const_cast<const char**>(*argv));
   google::gflags_exitfunc = &ExitUsage;
@@ -189,7 +191,7 @@ void ParseFlags(const std::string& usage, int* argc, char*** argv) {
       std::exit(FlushStdout() ? kExitDone : kExitFailed);
     }
     if (argument == "--version" || argument == "-version") {
-      std::cout << ProgramName() << " " << RIGEL_VERSION << "\n";
+      std::cout << ProgramName() << " " << RigelVersion() << "\n";
       std::exit(FlushStdout() ? kExitDone : kExitFailed);
     }
   }
@@ -307,27 +309,21 @@ bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
 
 bool ReadInput(const std::string& path, std::string* text) {
   constexpr size_t kMaxBytes = size_t{1} << 30;
-  const auto fail = [&](const std::string& what) {
-    std::cerr << PrintablePath(path) << ": " << what << "\n";
+  InputBytes bytes;
+  std::string error;
+  if (!ReadInputFile(path, &bytes, &error, kMaxBytes)) {
+    std::cerr << error << "\n";
     return false;
-  };
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             &std::fclose);
-  if (file == nullptr) return fail(std::string("cannot be opened: ") + std::strerror(errno));
-  std::error_code no_size;
-  const uintmax_t size = std::filesystem::file_size(path, no_size);
-  bool too_long = !no_size && size > kMaxBytes;
-  text->clear();
-  char buffer[1 << 16];
-  for (size_t n; !too_long && (n = std::fread(buffer, 1, sizeof(buffer), file.get())) > 0;) {
-    // Not text, and perhaps without an end.
-    if (std::memchr(buffer, 0, n) != nullptr) return fail("a NUL byte, expected text");
-    text->append(buffer, n);
-    too_long = text->size() > kMaxBytes;
   }
-  if (too_long) return fail("more than 1 GiB, expected no more");
-  if (std::ferror(file.get()) == 0) return true;
-  return fail(std::string("cannot be read: ") + std::strerror(errno));
+  std::string_view input = bytes.text();
+  int64_t line;
+  if (!CheckText(&input, &line, &error)) {
+    std::cerr << PrintablePath(InputName(path)) << (line > 0 ? ":" + std::to_string(line) : "")
+              << ": " << error << ", expected UTF-8 text\n";
+    return false;
+  }
+  *text = std::string(input);
+  return true;
 }
 
 std::vector<std::string> SplitCommas(const std::string& text) {

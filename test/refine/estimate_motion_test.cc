@@ -38,7 +38,8 @@ TEST(EstimateMotion, IsBornPessimistic) {
   EXPECT_FALSE(estimate.HasMotion());
   for (const EstimateStatus status :
        {EstimateStatus::kNotRun, EstimateStatus::kSuccess, EstimateStatus::kInvalidInput,
-        EstimateStatus::kTooFewMatches, EstimateStatus::kNoSolution, EstimateStatus::kNotRefined}) {
+        EstimateStatus::kTooFewMatches, EstimateStatus::kNoSolution, EstimateStatus::kNotRefined,
+        EstimateStatus::kNoConsensus}) {
     EXPECT_STRNE(EstimateStatusName(status), "unknown");
   }
   EXPECT_STREQ(EstimateStatusName(EstimateStatus::kSuccess), "ok");
