@@ -281,8 +281,8 @@ TEST_F(EstimateTest, ZUpBodyGivesItsTurnWhateverThePrior) {
                                                 "--inter_share=0.3", "--outlier_share=0.2"});
   MakeZUpWithoutPriors(directory);
   for (const Args& flags :
-       {Args{"--solver=auto"}, Args{"--solver=auto", "--prior=body"},
-        Args{"--solver=3pt", "--prior=body"}, Args{"--solver=3pt", "--prior=body", "--down=-z"},
+       {Args{}, Args{"--solver=auto", "--prior=body"}, Args{"--solver=3pt", "--prior=body"},
+        Args{"--solver=3pt", "--prior=body", "--down=-z"},
         Args{"--solver=4pt", "--prior=body", "--down=0,0,-3"}}) {
     const bool suggested = flags.size() == 2 && flags[1] == "--prior=body";
     const Outcome run = RunTool("estimate", Args{"--matches=" + directory, "--json=-"} + flags);
