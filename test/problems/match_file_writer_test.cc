@@ -24,7 +24,7 @@ TEST(WriteMatchFile, ByItsNameCompressed) {
   std::string error;
   ASSERT_TRUE(WriteMatchFile(dir / "a.matches.gz", pair, &error)) << error;
   ASSERT_TRUE(ReadMatchFile(dir / "a.matches.gz", &read, &error)) << error;
-  EXPECT_EQ(FormatMatches(read), FormatMatches(pair));
+  ExpectSame(read, pair);
   std::ifstream file(dir / "a.matches.gz", std::ios::binary);
   EXPECT_EQ(file.get(), 0x1f);
   EXPECT_EQ(file.get(), 0x8b);
