@@ -130,7 +130,7 @@ TEST(MatchFile, FailedWritesLeaveTheOldFile) {
   EXPECT_EQ(error.find("temporary"), std::string::npos) << error;
   fs::create_directory(dir / "folder");
   EXPECT_FALSE(WriteMatchFile(dir / "folder", pair, &error));
-  EXPECT_NE(error.find("Is a directory"), std::string::npos) << error;
+  EXPECT_NE(error.find("is a directory"), std::string::npos) << error;
   fs::remove(dir / "folder");
 
   // A device that takes 300 bytes stands for a full disk: a short text fails when the buffer is
