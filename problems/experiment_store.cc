@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "rigel/problems/experiment_report.h"
+#include "rigel/problems/json_text.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/whole_file.h"
 
@@ -38,6 +39,12 @@ bool ExperimentStore::Open(const std::string& path, const ExperimentPlan& plan, 
   const bool there = std::filesystem::exists(path, code);
   if (code) {
     *error = PrintablePath(path) + ": cannot be read: " + code.message();
+    return false;
+  }
+  if (resume && there &&
+      (!std::filesystem::is_regular_file(path, code) ||
+       std::filesystem::file_size(path, code) > kMaxJsonBytes)) {
+    *error = PrintablePath(path) + ": expected a file of at most 1 GiB";
     return false;
   }
   if (!resume || !there) return WriteWholeFile(path, PlanLine(plan, run_), error);

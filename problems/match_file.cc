@@ -282,6 +282,8 @@ class Parser {
         return Direction(&prior.normal);
       case kNormalSigma:
         return SigmaDeg(&prior.normal_sigma);
+      case kForward:
+        return Direction(&prior.forward);
       case kDistance:
         return Distance();
       case kNoise:

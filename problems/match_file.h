@@ -11,6 +11,7 @@
 //   axis_sigma_deg S
 //   normal NX NY NZ
 //   normal_sigma_deg S
+//   forward FX FY FZ
 //   distance D SIGMA
 //   noise_px S
 //   sequence NAME

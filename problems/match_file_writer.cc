@@ -120,6 +120,7 @@ std::string FormatMatches(const FramePair& pair) {
   sigma(kAxisSigma, prior.axis_sigma);
   direction(kNormal, prior.normal);
   sigma(kNormalSigma, prior.normal_sigma);
+  direction(kForward, prior.forward);
   if (prior.distance) {
     f.Word(kKeywords[kDistance].name).Number(*prior.distance).Number(prior.distance_sigma);
     f.EndLine();

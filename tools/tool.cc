@@ -14,7 +14,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <sstream>
+#include <system_error>
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
@@ -24,8 +26,8 @@
 #include "rigel/problems/input_file.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/output_place.h"
+#include "rigel/problems/version.h"
 #include "rigel/problems/whole_file.h"
-#include "rigel/tools/version.h"
 
 // gflags leaves the process through this pointer, with code 1; it is not in a public header.
 namespace google {
@@ -147,7 +149,8 @@ void PrintHelp(const std::string& usage) {
     }
     flush();
   }
-  std::cout << "\nExit code: 0 done, 1 failed, 2 wrong flag.\n";
+  std::cout
+      << "\nExit code: 0 done, 1 failed, 2 wrong flag, 3 a bound that a flag set was missed.\n";
 }
 
 }  // namespace
@@ -176,7 +179,7 @@ void ParseFlags(const std::string& usage, int* argc, char*** argv) {
   FLAGS_minloglevel = google::GLOG_FATAL;
   google::InitGoogleLogging((*argv)[0]);
   gflags::SetUsageMessage(usage);
-  gflags::SetVersionString(RIGEL_VERSION);
+  gflags::SetVersionString(RigelVersion());
   // The name of the program, which --version prints before the flags are parsed.
   gflags::SetArgv(*argc, const_cast<const char**>(*argv));
   google::gflags_exitfunc = &ExitUsage;
@@ -188,7 +191,7 @@ void ParseFlags(const std::string& usage, int* argc, char*** argv) {
       std::exit(FlushStdout() ? kExitDone : kExitFailed);
     }
     if (argument == "--version" || argument == "-version") {
-      std::cout << ProgramName() << " " << RIGEL_VERSION << "\n";
+      std::cout << ProgramName() << " " << RigelVersion() << "\n";
       std::exit(FlushStdout() ? kExitDone : kExitFailed);
     }
   }
@@ -305,9 +308,10 @@ bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
 }
 
 bool ReadInput(const std::string& path, std::string* text) {
+  constexpr size_t kMaxBytes = size_t{1} << 30;
   InputBytes bytes;
   std::string error;
-  if (!ReadInputFile(path, &bytes, &error)) {
+  if (!ReadInputFile(path, &bytes, &error, kMaxBytes)) {
     std::cerr << error << "\n";
     return false;
   }
