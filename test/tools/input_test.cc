@@ -91,7 +91,7 @@ TEST_F(InputTest, NamesAreInTheOrderOfTheirNumbersAndThatIsSaidOnce) {
 }
 
 TEST_F(InputTest, CalibratedCompressedFilesStayCompressed) {
-  const std::string clip = Simulate("clip", {"--pairs=6", "--motion=planar", "--rotation_deg=5"});
+  const std::string clip = Simulate("clip", {"--pairs=12", "--motion=planar", "--rotation_deg=5"});
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(clip)) names.push_back(entry.path().string());
   for (const std::string& name : names) {
