@@ -219,6 +219,11 @@ bool CanRefine(const EstimateOptions& estimate, const std::string& solver, std::
   return false;
 }
 
+bool ReadsStdin() {
+  const std::vector<std::string> items = SplitCommas(FLAGS_matches);
+  return std::find(items.begin(), items.end(), "-") != items.end();
+}
+
 InputFiles ListInput() {
   InputFiles input;
   std::vector<std::string> errors, notes;

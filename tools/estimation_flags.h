@@ -29,6 +29,9 @@ struct InputFiles {
   std::optional<Shard> shard;
 };
 
+// Whether stdin, "-", is among --matches.
+bool ReadsStdin();
+
 // Lists --matches. Says on stderr if there is no file at all.
 InputFiles ListInput();
 
