@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "rigel/core/eigen_types.h"
+
 namespace rigel {
 
 // Each part is optional. Directions are unit vectors. A sigma is the standard deviation per
@@ -25,6 +27,9 @@ struct MotionPrior {
   std::optional<Eigen::Vector3d> normal;
   std::optional<double> normal_sigma;
 
+  // Where the vehicle's front is in the body frame: for Ackermann motion.
+  std::optional<Eigen::Vector3d> forward;
+
   // |t| from odometry, metres, and its standard deviation.
   std::optional<double> distance;
   double distance_sigma = 0.0;
@@ -33,6 +38,7 @@ struct MotionPrior {
   // positive (that of the distance: negative) or anything is not finite.
   bool IsValid(std::string* error) const;
 };
+static_assert(kSameLayoutEverywhere<MotionPrior>, "no member of MotionPrior may be aligned");
 
 // Directions that are off by less are normalized where they are used.
 inline constexpr double kMaxUnitError = 1e-3;

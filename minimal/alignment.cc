@@ -57,6 +57,11 @@ bool MakeAlignment(const MotionPrior& prior, PriorKind kind, Alignment* alignmen
       }
       result.A1 = SmallestRotation(n, y);
       result.A2 = result.A1;
+      Eigen::Vector3d forward;
+      if (planar && prior.forward.has_value()) {
+        if (!UnitDirection(prior.forward, "forward", &forward, error)) return false;
+        result.forward = result.A1 * forward;
+      }
       break;
     }
   }

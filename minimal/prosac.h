@@ -25,6 +25,8 @@ class ProsacSampler {
   // The next sample, grouped positions of distinct matches; false if there is none. No heap.
   bool Draw(Random* random, int* sample);
 
+  bool CanDraw() const { return sampler_.CanDraw(); }
+
   // Of the best so many matches the last sample was drawn.
   int pool_size() const { return pool_size_; }
 

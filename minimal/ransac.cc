@@ -3,13 +3,13 @@
 namespace rigel {
 
 bool RansacOptions::IsValid(std::string* error) const {
-  if (!(threshold_px > 0) || !std::isfinite(threshold_px)) {
-    *error = "threshold_px must be positive and finite";
+  if (!(threshold_px >= 0) || !std::isfinite(threshold_px)) {
+    *error = "threshold_px must be positive and finite, or 0 for auto";
     return false;
   }
   // Beyond these its square is nothing to compute with.
-  if (threshold_px < 1e-6 || threshold_px > 1e6) {
-    *error = "threshold_px must lie in 1e-6 to 1e6";
+  if (threshold_px != kAutoThresholdPx && (threshold_px < 1e-12 || threshold_px > 1e12)) {
+    *error = "threshold_px must lie in 1e-12 to 1e12";
     return false;
   }
   if (score != ScoreKind::kMsac && score != ScoreKind::kMagsac &&

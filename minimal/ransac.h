@@ -16,6 +16,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "rigel/core/pixel_unit.h"
 #include "rigel/core/random.h"
 #include "rigel/core/stop.h"
 
@@ -33,7 +34,9 @@ enum class ScoreKind {
 };
 
 struct RansacOptions {
-  double threshold_px = 1.5;   // in 1e-6 to 1e6; 3 sigma keeps the estimate efficient
+  // In 1e-12 to 1e12; 3 sigma keeps the estimate efficient. kAutoThresholdPx: 1.5, or 1/300 of the
+  // shortest focal length where that is less; for EstimateMotion(), which resolves it.
+  double threshold_px = kAutoThresholdPx;
   double confidence = 0.9999;  // in (0, 1): that one sample of inliers was drawn
   int max_iterations = 10000;  // >= 1
   // At least so many: noise makes most samples of inliers poor hypotheses.
@@ -175,107 +178,165 @@ struct Finalists {
 
 }  // namespace ransac_internal
 
-// `options` must be valid. No heap allocation but what the solver's methods make. `stop` (may be
-// null) is asked before each iteration; what was found by then is the result.
+// A run that can be stopped and gone on with, so that several share one budget of iterations. How
+// they are divided does not change what they find. All that is passed must outlive the run;
+// `options` must be valid. `stop` (may be null) is asked before each iteration; what was found by
+// then is the result. No heap allocation but what the solver's methods make.
+template <class Solver>
+class RansacRun {
+ public:
+  static_assert(IsRansacSolver<Solver>::value, "Solver lacks a method: see IsRansacSolver");
+  using Model = typename Solver::Model;
+
+  RansacRun(const Solver& solver, const RansacOptions& options,
+            typename Solver::Solutions* solutions, Stop* stop = nullptr)
+      : solver_(solver),
+        options_(options),
+        solutions_(solutions),
+        stop_(stop),
+        random_(options.seed),
+        capacity_(options.local_optimization ? options.num_finalists : 0),
+        needed_(options.max_iterations) {
+    result_.score = kInfinity;
+    result_.minimal_score = kInfinity;
+  }
+
+  // At most so many iterations more; returns how many they were, fewer if the run was done.
+  int Advance(int iterations) {
+    const int before = result_.iterations;
+    const int end = before + std::min(iterations, options_.max_iterations - before);
+    while (result_.iterations < end && !Done() && !Stopped()) Iterate();
+    return result_.iterations - before;
+  }
+
+  // A sample of inliers was drawn with the confidence asked for, or there is none, or the work is
+  // used up.
+  bool Done() const {
+    return exhausted_ || !(result_.work_us < options_.max_work_us) || result_.iterations >= std::min(options_.max_iterations,
+                                                        std::max(needed_, options_.min_iterations));
+  }
+
+  // Optimizes the best hypothesis and the finalists: at the end, or to see how good they are.
+  void OptimizeFinalists() {
+    OptimizeBest();
+    if (Stopped()) return;
+    // From the best one too: few matches of large parallax may be out of its reach.
+    const Model best = result_.best;
+    constexpr int kMaxWorse = 2;
+    int num_worse = 0;
+    for (int k = capacity_ > 0 ? -1 : 0; k < finalists_.size && result_.found; ++k) {
+      Model model = k < 0 ? best : finalists_.items[k].model;
+      if ((k >= 0 && solver_.Similar(model, best)) || !solver_.OptimizeLoosely(&model)) continue;
+      int inliers = 0;
+      const double before = result_.score;
+      const double score = FullScore(model, result_.score, &inliers);
+      KeepBest(model, score, inliers);
+      // Where the best two finalists end no better, the others would not either.
+      if (k >= 0 && !(result_.score < before) && ++num_worse == kMaxWorse) break;
+    }
+  }
+
+  const RansacResult<Model>& result() const { return result_; }
+
+ private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  bool Stopped() const { return stop_ != nullptr && stop_->Asked(); }
+
+  double Bound(double score) const { return options_.early_termination ? score : kInfinity; }
+
+  bool CountsInliers() const { return options_.score == ScoreKind::kInlierCount; }
+
+  double FullScore(const Model& model, double limit, int* inliers) const {
+    if (!CountsInliers()) return solver_.Score(model, limit, inliers);
+    solver_.Score(model, kInfinity, inliers);
+    return solver_.num_data() - *inliers;
+  }
+
+  void KeepBest(const Model& model, double score, int inliers) {
+    if (!(score < result_.score)) return;
+    result_.best = model;
+    result_.score = score;
+    result_.num_inliers = inliers;
+    needed_ = IterationsNeeded(inliers / static_cast<double>(solver_.num_data()),
+                               solver_.sample_size(), options_.confidence, options_.max_iterations);
+  }
+
+  void OptimizeBest() {
+    if (optimized_ || !options_.local_optimization) return;
+    optimized_ = true;
+    Model model = result_.best_minimal;
+    if (!solver_.LocalOptimize(&model)) return;
+    int inliers = 0;
+    const double score = FullScore(model, result_.score, &inliers);
+    KeepBest(model, score, inliers);
+  }
+
+  void Iterate() {
+    ++result_.iterations;
+    int sample[64];
+    if (!solver_.Draw(&random_, sample)) {
+      exhausted_ = true;
+      return;
+    }
+    solver_.MinimalSolver(sample, solutions_);
+    result_.work_us += solver_.Work(static_cast<int>(solutions_->size()));
+    for (int k = 0; k < static_cast<int>(solutions_->size()); ++k) {
+      ++result_.hypotheses;
+      Judge((*solutions_)[k]);
+    }
+    // Before, a better hypothesis would soon make the optimization of this one superfluous.
+    if (result_.iterations == options_.min_iterations) OptimizeBest();
+  }
+
+  void Judge(Model model) {
+    if (capacity_ > 0) {
+      const double loose = solver_.LooseScore(model, Bound(finalists_.Worst(capacity_)));
+      if (loose < finalists_.Worst(capacity_)) finalists_.Add(solver_, model, loose, capacity_);
+    }
+    if (options_.bail_out && !CountsInliers() && result_.found &&
+        solver_.BailsOut(model, result_.minimal_score)) {
+      return;
+    }
+    // Also false for NaN. The quick score never rejects a winner; of a count there is none.
+    if (!CountsInliers() &&
+        !(solver_.QuickScore(model, Bound(result_.minimal_score)) < result_.minimal_score)) {
+      return;
+    }
+    if (!solver_.Admit(&model)) return;
+    int inliers = 0;
+    const double score = FullScore(model, Bound(result_.minimal_score), &inliers);
+    if (!(score < result_.minimal_score)) return;
+    result_.found = true;
+    result_.best_minimal = model;
+    result_.minimal_score = score;
+    KeepBest(model, score, inliers);
+    optimized_ = false;
+    if (result_.iterations > options_.min_iterations) OptimizeBest();
+  }
+
+  const Solver& solver_;
+  const RansacOptions& options_;
+  typename Solver::Solutions* solutions_;
+  Stop* stop_;
+  Random random_;
+  const int capacity_;  // of the finalists
+  ransac_internal::Finalists<Model> finalists_;
+  RansacResult<Model> result_;
+  int needed_;              // iterations
+  bool optimized_ = true;   // the best minimal hypothesis
+  bool exhausted_ = false;  // there is no sample
+};
+
+// A whole run. `options` must be valid.
 template <class Solver>
 RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOptions& options,
                                             typename Solver::Solutions* solutions,
                                             Stop* stop = nullptr) {
-  static_assert(IsRansacSolver<Solver>::value, "Solver lacks a method: see IsRansacSolver");
-  using Model = typename Solver::Model;
-  RansacResult<Model> result;
-  result.score = std::numeric_limits<double>::infinity();
-  result.minimal_score = std::numeric_limits<double>::infinity();
-  Random random(options.seed);
-  int sample[64];
-  const int max_iterations = options.max_iterations;
-  const int capacity = options.local_optimization ? options.num_finalists : 0;
-  ransac_internal::Finalists<Model> finalists;
-  int needed = max_iterations;
-
-  const auto bound = [&](double score) {
-    return options.early_termination ? score : std::numeric_limits<double>::infinity();
-  };
-  const bool count = options.score == ScoreKind::kInlierCount;
-  const auto full_score = [&](const Model& model, double limit, int* inliers) -> double {
-    if (!count) return solver.Score(model, limit, inliers);
-    solver.Score(model, std::numeric_limits<double>::infinity(), inliers);
-    return solver.num_data() - *inliers;
-  };
-  const auto keep_best = [&](const Model& model, double score, int inliers) {
-    if (!(score < result.score)) return;
-    result.best = model;
-    result.score = score;
-    result.num_inliers = inliers;
-    needed = IterationsNeeded(inliers / static_cast<double>(solver.num_data()),
-                              solver.sample_size(), options.confidence, max_iterations);
-  };
-
-  bool optimized = true;  // the best minimal hypothesis
-  const auto optimize_best = [&] {
-    if (optimized || !options.local_optimization) return;
-    optimized = true;
-    Model model = result.best_minimal;
-    if (!solver.LocalOptimize(&model)) return;
-    int inliers = 0;
-    const double score = full_score(model, result.score, &inliers);
-    keep_best(model, score, inliers);
-  };
-
-  while (result.iterations < std::min(max_iterations, std::max(needed, options.min_iterations)) &&
-         result.work_us < options.max_work_us) {
-    if (stop != nullptr && stop->Asked()) break;
-    ++result.iterations;
-    if (!solver.Draw(&random, sample)) break;
-    solver.MinimalSolver(sample, solutions);
-    result.work_us += solver.Work(static_cast<int>(solutions->size()));
-    for (int k = 0; k < static_cast<int>(solutions->size()); ++k) {
-      ++result.hypotheses;
-      Model model = (*solutions)[k];
-      if (capacity > 0) {
-        const double loose = solver.LooseScore(model, bound(finalists.Worst(capacity)));
-        if (loose < finalists.Worst(capacity)) finalists.Add(solver, model, loose, capacity);
-      }
-      if (options.bail_out && !count && result.found &&
-          solver.BailsOut(model, result.minimal_score)) {
-        continue;
-      }
-      // Also false for NaN. The quick score never rejects a winner; of a count there is none.
-      if (!count &&
-          !(solver.QuickScore(model, bound(result.minimal_score)) < result.minimal_score)) {
-        continue;
-      }
-      if (!solver.Admit(&model)) continue;
-      int inliers = 0;
-      const double score = full_score(model, bound(result.minimal_score), &inliers);
-      if (!(score < result.minimal_score)) continue;
-      result.found = true;
-      result.best_minimal = model;
-      result.minimal_score = score;
-      keep_best(model, score, inliers);
-      optimized = false;
-      if (result.iterations > options.min_iterations) optimize_best();
-    }
-    // Before, a better hypothesis would soon make the optimization of this one superfluous.
-    if (result.iterations == options.min_iterations) optimize_best();
-  }
-  optimize_best();
-  if (stop != nullptr && stop->Asked()) return result;
-  // From the best one too: few matches of large parallax may be out of its reach.
-  const Model best = result.best;
-  constexpr int kMaxWorse = 2;
-  int num_worse = 0;
-  for (int k = capacity > 0 ? -1 : 0; k < finalists.size && result.found; ++k) {
-    Model model = k < 0 ? best : finalists.items[k].model;
-    if ((k >= 0 && solver.Similar(model, best)) || !solver.OptimizeLoosely(&model)) continue;
-    int inliers = 0;
-    const double before = result.score;
-    const double score = full_score(model, result.score, &inliers);
-    keep_best(model, score, inliers);
-    // Where the best two finalists end no better, the others would not either.
-    if (k >= 0 && !(result.score < before) && ++num_worse == kMaxWorse) break;
-  }
-  return result;
+  RansacRun<Solver> run(solver, options, solutions, stop);
+  run.Advance(options.max_iterations);
+  run.OptimizeFinalists();
+  return run.result();
 }
 
 }  // namespace rigel

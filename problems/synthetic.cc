@@ -15,6 +15,20 @@ constexpr int kMaxDraws = 1000;
 
 constexpr double kRatioTest = 0.8;  // no match has a larger score
 
+// Body z is ahead and y down.
+Rig MakeRing(int num_cameras) {
+  Rig rig;
+  for (int k = 0; k < num_cameras; ++k) {
+    const double angle = 2.0 * kPi * k / num_cameras;
+    RigCamera camera;
+    camera.intrinsics = {400.0, 400.0, 320.0, 240.0, 640, 480};
+    camera.Q = ExpSO3(angle * Eigen::Vector3d::UnitY());
+    camera.s = camera.Q.col(2);
+    rig.cameras.push_back(camera);
+  }
+  return rig;
+}
+
 Rig MakeRig(int num_cameras, Random* random) {
   const Eigen::Vector3d positions[4] = {
       {-0.5, 0.0, 0.0}, {0.5, 0.0, 0.0}, {0.0, 0.4, 0.3}, {0.0, -0.4, 0.3}};
@@ -35,12 +49,8 @@ Eigen::Vector2d Noise(double sigma, Random* random) {
   return {sigma * x, sigma * y};
 }
 
-bool DrawMatch(const SceneOptions& options, const Rig& rig, const Pose& truth, bool inter,
-               int number, Random* random, Match* match) {
-  match->camera1 = number % options.num_cameras;
-  match->camera2 =
-      inter ? (match->camera1 + 1 + random->Index(options.num_cameras - 1)) % options.num_cameras
-            : match->camera1;
+// A point that both cameras of the match see.
+bool DrawSeenMatch(const Rig& rig, const Pose& truth, Random* random, Match* match) {
   const RigCamera& camera1 = rig.cameras[match->camera1];
   const RigCamera& camera2 = rig.cameras[match->camera2];
   for (int draw = 0; draw < kMaxDraws; ++draw) {
@@ -54,6 +64,25 @@ bool DrawMatch(const SceneOptions& options, const Rig& rig, const Pose& truth, b
     if (!(X2.z() > 0.1)) continue;
     match->pixel2 = camera2.intrinsics.Project(X2);
     if (camera2.intrinsics.InImage(match->pixel2)) return true;
+  }
+  return false;
+}
+
+bool DrawMatch(const SceneOptions& options, const Rig& rig, const Pose& truth, bool inter,
+               int number, Random* random, Match* match) {
+  const int n = options.num_cameras;
+  match->camera1 = number % n;
+  match->camera2 = match->camera1;
+  if (!inter) return DrawSeenMatch(rig, truth, random, match);
+  if (!options.ring) {
+    match->camera2 = (match->camera1 + 1 + random->Index(n - 1)) % n;
+    return DrawSeenMatch(rig, truth, random, match);
+  }
+  // In a turn one neighbour may see nothing of what the other does.
+  const bool right = random->Index(2) == 1;
+  for (const bool side : {right, !right}) {
+    match->camera2 = (match->camera1 + (side ? 1 : n - 1)) % n;
+    if (DrawSeenMatch(rig, truth, random, match)) return true;
   }
   return false;
 }
@@ -156,8 +185,10 @@ bool ParseRotationAxisPattern(std::string_view name, RotationAxisPattern* patter
 
 bool SceneOptions::IsValid(std::string* error) const {
   const auto in_unit = [](double x) { return x >= 0.0 && x <= 1.0; };
-  if (num_cameras < 1 || num_cameras > 4) {
-    *error = "num_cameras must be 1 to 4";
+  const int max_cameras = ring ? kMaxRing : 4;
+  if (num_cameras < 1 || num_cameras > max_cameras) {
+    *error = "num_cameras must be 1 to " + std::to_string(max_cameras) +
+             (ring ? " on a ring" : " without a ring");
   } else if (num_matches < 0) {
     *error = "num_matches must not be negative";
   } else if (!(noise_px >= 0.0) || !std::isfinite(noise_px)) {
@@ -216,7 +247,7 @@ bool MakeScenePair(const SceneOptions& options, int index, const Pose& truth, Fr
   result.name = "pair " + std::to_string(index);
   result.truth = truth;
   if (options.noise_px > 0.0) result.noise_px = options.noise_px;
-  result.rig = MakeRig(options.num_cameras, &random);
+  result.rig = options.ring ? MakeRing(options.num_cameras) : MakeRig(options.num_cameras, &random);
   result.prior.gravity1 = Eigen::Vector3d::UnitY();
   result.prior.gravity2 = truth.R * *result.prior.gravity1;
   const double angle = LogSO3(truth.R).norm();

@@ -4,6 +4,10 @@
 // N(0, 0.1 rad) per axis; 640 x 480 pixels, focal length 400, principal point at the centre. Image
 // points uniform in view 1, depth uniform in 5-30 m, kept if they fall into the image of view 2.
 //
+// A ring, where one is asked for: 1 to 16 such cameras on a circle of 1 m radius in the plane
+// perpendicular to the body's down, at equal angles, the first ahead, each facing outwards with its
+// image's y down. Exactly so. Matches between cameras are of neighbours.
+//
 // A car, where one is asked for: a box 4.5 m long, 1.8 m wide and 1.5 m high, 5-15 m in front of
 // the rig, with points uniform in it. Between the frames it moves by 0.5-2 m over the ground, in
 // any direction, and turns by up to 3 degrees about its vertical.
@@ -29,8 +33,12 @@ enum class RotationAxisPattern { kY, kRandom };
 bool ParseMotionPattern(std::string_view name, MotionPattern* pattern);
 bool ParseRotationAxisPattern(std::string_view name, RotationAxisPattern* pattern);
 
+inline constexpr int kMaxRing = 16;
+
 struct SceneOptions {
-  int num_cameras = 2;  // 1 to 4; the third and fourth at (0, 0.4, 0.3) and (0, -0.4, 0.3) m
+  // 1 to 4, the third and fourth at (0, 0.4, 0.3) and (0, -0.4, 0.3) m; of a ring 1 to kMaxRing.
+  int num_cameras = 2;
+  bool ring = false;
   int num_matches = 200;
   double noise_px = 0.5;      // 1-sigma on each image coordinate of both views
   double rotation_deg = 1.0;  // about the axis, exactly

@@ -7,9 +7,9 @@
 
 namespace rigel {
 
-bool ExceedsChance(const GroupedMatches& matches, int num_inliers, double threshold_px) {
+bool ExceedsChance(const GroupedMatches& matches, int num_inliers, double threshold_px,
+                   double num_tries) {
   constexpr int kFree = 6;
-  constexpr double kLogTests = 16.0;  // ln of 10^7 tries
   const int n = matches.size() - kFree;
   const int k = num_inliers - kFree;
   if (n <= 0 || k <= 0) return false;
@@ -33,7 +33,7 @@ bool ExceedsChance(const GroupedMatches& matches, int num_inliers, double thresh
   const double divergence =
       share * std::log(share / q) +
       (share < 1.0 ? (1.0 - share) * std::log((1.0 - share) / (1.0 - q)) : 0.0);
-  return n * divergence > kLogTests;
+  return n * divergence > std::log(num_tries);
 }
 
 }  // namespace rigel

@@ -7,10 +7,11 @@
 namespace rigel {
 
 // Random points fall into the band of the threshold around an epipolar line with the probability q
-// of its share of the image, a fit takes six of them for free, and many fits were tried: true if
+// of its share of the image, a fit takes six of them for free, and `num_tries` were tried: true if
 // the Chernoff bound on the binomial tail of the others beats that number (a contrario, as Moisan
 // and Stival, IJCV 2004).
-bool ExceedsChance(const GroupedMatches& matches, int num_inliers, double threshold_px);
+bool ExceedsChance(const GroupedMatches& matches, int num_inliers, double threshold_px,
+                   double num_tries);
 
 }  // namespace rigel
 

@@ -5,187 +5,21 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
-#include "rigel/minimal/prepared_matches.h"
-#include "rigel/minimal/prosac.h"
-#include "rigel/refine/sign_and_scale.h"
-#include "rigel/refine/small_engine.h"
-#include "rigel/refine/solver_choice.h"
+#include "rigel/core/body_axes.h"
+#include "rigel/core/pixel_unit.h"
+#include "rigel/core/rig_centre.h"
+#include "rigel/minimal/alignment.h"
+#include "rigel/minimal/grouped_matches.h"
+#include "rigel/minimal/two_point_ackermann.h"
+#include "rigel/refine/chance.h"
+#include "rigel/refine/motion_search.h"
+#include "rigel/refine/rig_doubts.h"
 
 namespace rigel {
 namespace {
-
-// The solver concept of ransac.h for a frame pair and a solver of the catalogue.
-class FramePairSolver {
- public:
-  using Model = Solution;
-  using Solutions = rigel::Solutions;
-
-  FramePairSolver(const SolverInfo& solver, const GroupedMatches& matches,
-                  const Alignment& alignment, const RansacOptions& options)
-      : solver_(solver),
-        matches_(matches),
-        scored_subset_(matches.size() > options.max_scored ? matches.DrawnSubset(options.max_scored)
-                                                           : GroupedMatches()),
-        scored_(scored_subset_.size() > 0 ? scored_subset_ : matches_),
-        subset_(matches.EvenSubset(kSubset)),
-        drawn_subset_(scored_.DrawnSubset(kSubset)),
-        sign_subset_(matches.EvenSubset(kSignSubset)),
-        prepared_(PreparedMatches::OnDemand(matches, alignment)),
-        sampler_(matches, solver.sampling, solver.sample_size, options.max_iterations,
-                 options.prosac),
-        options_(options),
-        optimized_(matches.EvenSubset(kOptimized)),
-        loose_engine_(subset_),
-        engine_(optimized_),
-        threshold_px_(options.threshold_px) {
-    if (options.score == ScoreKind::kMagsac) {
-      loss_ = MagsacTable(options.threshold_px * options.threshold_px);
-    }
-    for (const MatchGroup& group : matches.groups()) {
-      if (group.camera1 != group.camera2) intra_only_ = false;
-    }
-  }
-
-  int num_data() const { return scored_.size(); }
-  int sample_size() const { return solver_.sample_size; }
-  bool Draw(Random* random, int* sample) const {
-    for (int k = 0; k < kMaxRedraws; ++k) {
-      const bool drawn = sampler_.Draw(random, sample);
-      if (!drawn || !options_.spread_samples || IsSpread(sample)) return drawn;
-    }
-    return true;
-  }
-  int MinimalSolver(const int* sample, Solutions* solutions) const {
-    prepared_.Prepare(sample, solver_.sample_size);
-    return solver_.solve(prepared_, sample, solutions);
-  }
-  double Work(int num_solutions) const {
-    constexpr double kSample = 1.0, kSolution = 0.3, kGroup = 0.05, kMatch = 0.0025;
-    return kSample + solver_.nominal_us +
-           num_solutions * (kSolution + kGroup * static_cast<double>(scored_.groups().size()) +
-                            kMatch * scored_.size());
-  }
-  // Does not look at depths, which only add to the score; the sign of t matters little to it.
-  double QuickScore(const Model& model, double bound) const {
-    return scored_.Score(model, threshold_px_, bound, nullptr, Loss());
-  }
-  // The sum over the subset is too far above its expectation for a score of `best`. Terms are
-  // between 0 and t^2: of all sets of so many with this mean those of zeros and t^2 alone scatter
-  // most, hypergeometrically, and where few are t^2 with a longer tail than a normal one.
-  bool BailsOut(const Model& model, double best) const {
-    constexpr double kDeviations = 3.0;
-    constexpr double kTerms = 2.0;
-    const double n = scored_.size(), m = drawn_subset_.size();
-    if (n < 2.0 * m) return false;
-    const double t2 = threshold_px_ * threshold_px_;
-    const double p = std::min(best / (n * t2), 1.0);
-    const double sigma = std::sqrt(m * p * (1.0 - p) * (1.0 - m / n));
-    const double limit = t2 * (m * p + kDeviations * sigma + kTerms);
-    return drawn_subset_.Score(model, threshold_px_, limit, nullptr, Loss()) > limit;
-  }
-  double Score(const Model& model, double bound, int* inliers) const {
-    return scored_.ScoreInFront(model, threshold_px_, bound, inliers, Loss());
-  }
-
-  bool Admit(Model* model) const {
-    return model->AllFinite() && ResolveSign(sign_subset_, threshold_px_, model);
-  }
-
-  bool Similar(const Model& a, const Model& b) const {
-    constexpr double kMinTrace = 3.0 - 3.05e-4;  // 1 + 2 cos(1 deg)
-    constexpr double kMinCosine = 0.94;          // 20 deg
-    return a.R.cwiseProduct(b.R).sum() > kMinTrace &&
-           std::abs(a.t.dot(b.t)) > kMinCosine * a.t.norm() * b.t.norm();
-  }
-
-  double LooseScore(const Model& model, double bound) const {
-    return subset_.Score(model, kLooseFactor * threshold_px_, bound, nullptr);
-  }
-
-  // In two steps, at the loose threshold and at the threshold.
-  bool OptimizeLoosely(Model* model) const {
-    ResolveSignAndMaybeScale(kLooseFactor * threshold_px_, model);
-    return OptimizeOn(subset_, &loose_engine_, kLooseFactor * threshold_px_, model) &&
-           OptimizeOn(optimized_, &engine_, threshold_px_, model) && Admit(model);
-  }
-
-  bool LocalOptimize(Model* model) const {
-    Model optimized = *model;
-    ResolveSignAndMaybeScale(threshold_px_, &optimized);
-    if (!OptimizeOn(optimized_, &engine_, threshold_px_, &optimized) || !Admit(&optimized)) {
-      return false;
-    }
-    *model = optimized;
-    return true;
-  }
-
- private:
-  // A motion prior that is off by half a degree moves points by a few pixels.
-  static constexpr double kLooseFactor = 4.0;
-  // So many matches tell a good hypothesis from a bad one loosely.
-  static constexpr size_t kSubset = 128;
-  // The refinement takes all; until then these are enough.
-  static constexpr size_t kOptimized = 300;
-
-  const LossTable* Loss() const { return loss_.has_value() ? &*loss_ : nullptr; }
-
-  // No two matches of a camera pair near one another in the first image.
-  bool IsSpread(const int* sample) const {
-    const double limit2 = options_.min_sample_distance_px * options_.min_sample_distance_px;
-    for (int i = 0; i < solver_.sample_size; ++i) {
-      const Match& a = matches_.matches()[sample[i]];
-      for (int j = 0; j < i; ++j) {
-        const Match& b = matches_.matches()[sample[j]];
-        if (a.camera1 == b.camera1 && a.camera2 == b.camera2 &&
-            (a.pixel1 - b.pixel1).squaredNorm() < limit2) {
-          return false;
-        }
-      }
-    }
-    return true;
-  }
-
-  // Such matches and a minimal sample hardly determine |t|.
-  bool ScaleIsNoise(const Model& model) const { return intra_only_ || !model.has_scale; }
-
-  void ResolveSignAndMaybeScale(double threshold, Model* model) const {
-    if (ScaleIsNoise(*model)) {
-      ResolveSignAndScale(sign_subset_, threshold, model);
-    } else {
-      ResolveSign(sign_subset_, threshold, model);
-    }
-  }
-
-  bool OptimizeOn(const GroupedMatches& matches, SmallEngine* engine, double threshold,
-                  Model* model) const {
-    SmallEngineOptions options;
-    options.loss_scale = threshold;
-    options.inverse_scale = ScaleIsNoise(*model);
-    matches.SelectInliers(*model, threshold, &squared_errors_, &inliers_);
-    return engine->Minimize(options, inliers_, model);
-  }
-
-  const SolverInfo& solver_;
-  const GroupedMatches& matches_;
-  GroupedMatches scored_subset_;  // empty if all are scored
-  const GroupedMatches& scored_;
-  GroupedMatches subset_;
-  GroupedMatches drawn_subset_;
-  GroupedMatches sign_subset_;
-  mutable PreparedMatches prepared_;
-  mutable ProsacSampler sampler_;
-  const RansacOptions& options_;
-  std::optional<LossTable> loss_;
-  GroupedMatches optimized_;
-  mutable SmallEngine loose_engine_;
-  mutable SmallEngine engine_;
-  double threshold_px_;
-  mutable std::vector<double> squared_errors_;
-  mutable std::vector<char> inliers_;
-  bool intra_only_ = true;
-};
 
 double MillisecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
@@ -197,6 +31,17 @@ MotionEstimate Refused(EstimateStatus status, const std::string& message) {
   estimate.status = status;
   estimate.message = message;
   return estimate;
+}
+
+// Ackermann motion has a front: that of the rig where the prior states none.
+MotionPrior WithForward(const FramePair& pair) {
+  MotionPrior prior = pair.prior;
+  BodyAxes axes;
+  std::string error;
+  if (!prior.forward && ResolveBodyAxes(pair.rig, {}, {}, &axes, &error)) {
+    prior.forward = axes.forward;
+  }
+  return prior;
 }
 
 }  // namespace
@@ -215,6 +60,8 @@ const char* EstimateStatusName(EstimateStatus status) {
       return "no solution";
     case EstimateStatus::kNotRefined:
       return "not refined";
+    case EstimateStatus::kNoConsensus:
+      return "no consensus";
   }
   return "unknown";
 }
@@ -231,12 +78,14 @@ bool EstimateOptions::IsValid(std::string* error) const {
          IsValidTimeLimit(time_limit, error);
 }
 
-MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& pair) {
-  Stop stop(options.time_limit, options.cancel);
+MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pair) {
+  Stop stop(given.time_limit, given.cancel);
   std::string error;
-  if (!options.IsValid(&error) || !pair.IsValid(&error)) {
+  if (!given.IsValid(&error) || !pair.IsValid(&error)) {
     return Refused(EstimateStatus::kInvalidInput, error);
   }
+  EstimateOptions options = given;
+  options.ransac.threshold_px = ThresholdPx(given.ransac.threshold_px, pair.rig);
   const double distance = pair.prior.distance.value_or(0.0);
   if (options.refine_motion && options.refine.scale == ScaleMode::kFixed &&
       !(distance > 0 && std::isfinite(distance))) {
@@ -257,46 +106,41 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
                          RefineFormName(options.refine.form) + "' to hold");
     }
   }
-  const int num_matches = static_cast<int>(pair.matches.size());
-
-  MotionEstimate estimate;
-  const auto ransac_start = std::chrono::steady_clock::now();
-  const GroupedMatches matches(pair.rig, pair.matches);
-  RansacResult<Solution> ransac;
-  const SolverInfo* solver = nullptr;
-  for (const SolverInfo* candidate : solvers) {
+  const MotionPrior prior = WithForward(pair);
+  for (const SolverInfo* solver : solvers) {
     Alignment alignment;
-    if (!MakeAlignment(pair.prior, candidate->prior, &alignment, &error)) {
+    if (!MakeAlignment(prior, solver->prior, &alignment, &error)) {
       return Refused(EstimateStatus::kInvalidInput, options.solver + ": " + error);
     }
-    if (num_matches < candidate->sample_size) {
-      if (solver != nullptr) break;
-      return Refused(EstimateStatus::kTooFewMatches, std::to_string(num_matches) + " matches, " +
-                                                         candidate->name + " needs " +
-                                                         std::to_string(candidate->sample_size));
-    }
-    const FramePairSolver problem(*candidate, matches, alignment, options.ransac);
-    Solutions solutions;
-    const RansacResult<Solution> result = Ransac(problem, options.ransac, &solutions, &stop);
-    estimate.iterations += result.iterations;
-    estimate.hypotheses += result.hypotheses;
-    if (solver == nullptr || (result.found && !(ransac.found && ransac.score <= result.score))) {
-      ransac = result;
-      solver = candidate;
-    }
-    if (result.found && candidate != solvers.back() &&
-        !IsDoubtful(pair.prior, *candidate, result.best, matches, options.ransac.threshold_px)) {
-      break;
-    }
   }
+
+  const auto ransac_start = std::chrono::steady_clock::now();
+  // Of the motion of the rig's centre; the body's is made of it in the end. The Ackermann model is
+  // of the body's origin.
+  const bool ackermann = solvers[0]->solve == &Solve2ptAckermann;
+  const Eigen::Vector3d centre =
+      ackermann ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : RigCentre(pair.rig);
+  const GroupedMatches matches(WithOrigin(pair.rig, centre), pair.matches);
+  MotionSearch search = SearchMotion(solvers, prior, matches, options.ransac, &stop);
   // The loop knows how many of those that it scored.
-  if (ransac.found && num_matches > options.ransac.max_scored) {
-    matches.ScoreInFront(ransac.best, options.ransac.threshold_px,
-                         std::numeric_limits<double>::infinity(), &ransac.num_inliers);
+  if (search.best.found && matches.size() > options.ransac.max_scored) {
+    matches.ScoreInFront(search.best.best, options.ransac.threshold_px,
+                         std::numeric_limits<double>::infinity(), &search.best.num_inliers);
   }
+  MotionEstimate estimate;
+  estimate.iterations = search.iterations;
+  estimate.hypotheses = search.hypotheses;
+  estimate.trials = std::move(search.trials);
   estimate.ransac_ms = MillisecondsSince(ransac_start);
-  estimate.solver = solver->name;
   estimate.stopped = stop.reason();
+  if (search.solver == nullptr) {
+    estimate.status = matches.size() < solvers[0]->sample_size ? EstimateStatus::kTooFewMatches
+                                                               : EstimateStatus::kNoSolution;
+    estimate.message = estimate.trials[0].note;
+    return estimate;
+  }
+  estimate.solver = search.solver->name;
+  const RansacResult<Solution>& ransac = search.best;
   if (!ransac.found) {
     estimate.status = EstimateStatus::kNoSolution;
     estimate.message = estimate.stopped != StopReason::kNone
@@ -305,35 +149,58 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
     return estimate;
   }
   estimate.raw = ransac.best_minimal;
-  estimate.pose = ransac.best;
+  estimate.raw.t = MotionOfBody(ransac.best_minimal, centre).t;
+  estimate.pose = MotionOfBody(ransac.best, centre);
   estimate.num_inliers = ransac.num_inliers;
-  estimate.inlier_ratio = ransac.num_inliers / static_cast<double>(matches.size());
   estimate.status = EstimateStatus::kSuccess;
   estimate.message = estimate.stopped != StopReason::kNone ? stop.Message() : "ok";
-  if (!options.refine_motion) return estimate;
-
-  const auto refine_start = std::chrono::steady_clock::now();
-  RefineOptions refine = options.refine;
-  refine.prior_kind = solver->prior;
-  refine.threshold_px = options.ransac.threshold_px;
-  const std::optional<double> left = stop.SecondsLeft();
-  if (left) refine.time_limit = std::min(*left, refine.time_limit.value_or(*left));
-  if (refine.cancel == nullptr) refine.cancel = options.cancel;
-  estimate.refine = Refine(refine, matches, pair.prior, &estimate.pose);
-  estimate.refine_ms = MillisecondsSince(refine_start);
-  if (!estimate.refine.IsSolutionUsable()) {
-    estimate.status = EstimateStatus::kNotRefined;
-    estimate.message = "not refined: " + estimate.refine.message;
-    estimate.pose = ransac.best;
+  if (options.refine_motion) {
+    const auto refine_start = std::chrono::steady_clock::now();
+    RefineOptions refine = options.refine;
+    refine.prior_kind = search.solver->prior;
+    refine.threshold_px = options.ransac.threshold_px;
+    refine.num_tries = static_cast<double>(search.hypotheses);
+    const std::optional<double> left = stop.SecondsLeft();
+    if (left) refine.time_limit = std::min(*left, refine.time_limit.value_or(*left));
+    if (refine.cancel == nullptr) refine.cancel = options.cancel;
+    estimate.refine = RefineAbout(refine, matches, centre, pair.prior, &estimate.pose);
+    estimate.refine_ms = MillisecondsSince(refine_start);
+    if (estimate.refine.IsSolutionUsable()) {
+      estimate.num_inliers = estimate.refine.num_inliers;
+      if (estimate.refine.stopped != StopReason::kNone) {
+        estimate.stopped = estimate.refine.stopped;
+        // Refine() knows of no more than what was left of the limit.
+        estimate.message = stop.Asked() ? stop.Message() : estimate.refine.message;
+      }
+    } else {
+      estimate.status = EstimateStatus::kNotRefined;
+      estimate.message = "not refined: " + estimate.refine.message;
+    }
+  }
+  estimate.inlier_ratio = estimate.num_inliers / static_cast<double>(matches.size());
+  const bool exceeds_chance =
+      estimate.refine.IsSolutionUsable()
+          ? estimate.refine.exceeds_chance
+          : ExceedsChance(matches, estimate.num_inliers, options.ransac.threshold_px,
+                          static_cast<double>(search.hypotheses));
+  if (!exceeds_chance) {
+    estimate.status = EstimateStatus::kNoConsensus;
+    estimate.message = std::to_string(estimate.num_inliers) + " of " +
+                       std::to_string(matches.size()) +
+                       " matches agree on a motion, no more than chance allows";
     return estimate;
   }
-  if (estimate.refine.stopped != StopReason::kNone) {
-    estimate.stopped = estimate.refine.stopped;
-    // Refine() knows of no more than what was left of the limit.
-    estimate.message = stop.Asked() ? stop.Message() : estimate.refine.message;
+  const Doubt doubt =
+      FindDoubt(pair.prior, *search.solver, MotionOfPoint(estimate.pose, centre), matches,
+                options.ransac.threshold_px);
+  estimate.doubtful = doubt.Any();
+  estimate.doubt = doubt.Reason();
+  if (estimate.status == EstimateStatus::kSuccess && options.refine_motion && options.check_rig &&
+      estimate.stopped == StopReason::kNone) {
+    EstimateOptions again = given;
+    again.time_limit = stop.SecondsLeft();
+    estimate.rig_doubts = FindRigDoubts(again, pair, estimate);
   }
-  estimate.num_inliers = estimate.refine.num_inliers;
-  estimate.inlier_ratio = estimate.num_inliers / static_cast<double>(matches.size());
   return estimate;
 }
 

@@ -3,8 +3,10 @@
 #define RIGEL_REFINE_ESTIMATE_MOTION_H_
 
 #include <atomic>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "rigel/core/frame_pair.h"
 #include "rigel/core/stop.h"
@@ -12,16 +14,17 @@
 #include "rigel/minimal/ransac.h"
 #include "rigel/minimal/solutions.h"
 #include "rigel/refine/refine.h"
+#include "rigel/refine/solver_choice.h"
 
 namespace rigel {
 
 struct EstimateOptions {
-  // A name of SolverCatalogue(), or "auto": SuggestSolvers() of solver_choice.h, one after the
-  // other while the result is doubtful, so that a wrong prior costs time and not accuracy (unless
-  // refine.use_prior weighs it). With a form that takes the prior as exact (kPrior, kPriorDepths)
-  // only the first of them.
-  std::string solver = "4pt-axis";
-  RansacOptions ransac;
+  // A name of SolverCatalogue(), or "auto": SuggestSolvers() of solver_choice.h, as many of them as
+  // it takes to find a motion beyond doubt (motion_search.h), so that a wrong prior costs time and
+  // not accuracy (unless refine.use_prior weighs it). With a form that takes the prior as exact
+  // (kPrior, kPriorDepths) only the first of them.
+  std::string solver = "auto";
+  RansacOptions ransac;  // of "auto", its max_iterations are those of all solvers together
   bool refine_motion = true;
   // ScaleMode::kFixed needs the prior's distance: the |t| that RANSAC finds may be arbitrary.
   // The solver's prior replaces refine.prior_kind; refine.threshold_px is taken from ransac.
@@ -33,6 +36,10 @@ struct EstimateOptions {
   // Ends the call likewise once it is true; any thread may set it. Null, or outlives the call.
   const std::atomic<bool>* cancel = nullptr;
 
+  // Looks for what contradicts the rig (MotionEstimate::rig_doubts). Takes time where something
+  // does: a second estimate or a few.
+  bool check_rig = true;
+
   bool IsValid(std::string* error) const;
 };
 
@@ -43,16 +50,32 @@ enum class EstimateStatus {
   kTooFewMatches,  // fewer than the solver's sample
   kNoSolution,     // no sample gave a motion
   kNotRefined,     // RANSAC succeeded, the refinement did not: pose is RANSAC's
+  kNoConsensus,    // no more matches agree than chance allows: pose means nothing
 };
 
 const char* EstimateStatusName(EstimateStatus status);
 
+enum class RigDoubtKind {
+  kFrozen,   // camera1 shows the same image twice
+  kFewFit,   // few of the matches between camera1 and camera2 fit
+  kSwapped,  // more would fit if the two were swapped
+};
+
+// What in a pair contradicts its rig, for a person to look into (rig_doubts.h).
+struct RigDoubt {
+  RigDoubtKind kind = RigDoubtKind::kFewFit;
+  int camera1 = 0;  // at most camera2
+  int camera2 = 0;
+  std::string message;  // "cameras 0-1: 12 of 760 fit; are they swapped, ..."
+};
+
 struct MotionEstimate {
   EstimateStatus status = EstimateStatus::kNotRun;
   std::string message = "EstimateMotion was not called.";
-  std::string solver;  // whose hypotheses led to it
-  Pose pose;           // the estimate: refined where that was asked for and done
-  Solution raw;        // the best-scoring minimal hypothesis of RANSAC, before any optimization
+  std::string solver;               // whose hypotheses led to it
+  std::vector<SolverTrial> trials;  // what became of each solver; several with "auto"
+  Pose pose;                        // the estimate: refined where that was asked for and done
+  Solution raw;  // the best-scoring minimal hypothesis of RANSAC, before any optimization
   int num_inliers = 0;
   double inlier_ratio = 0.0;
   int iterations = 0;
@@ -63,6 +86,10 @@ struct MotionEstimate {
   // What ended the call early; message says it too. The motion, if there is one, is the best found
   // by then, and refine states no uncertainty unless it was done.
   StopReason stopped = StopReason::kNone;
+  // Something speaks against the motion, as where the prior is wrong: see Doubt.
+  bool doubtful = false;
+  std::string doubt;  // what; empty if nothing does
+  std::vector<RigDoubt> rig_doubts;  // of a refined motion; the estimate is as without them
 
   bool HasMotion() const {
     return status == EstimateStatus::kSuccess || status == EstimateStatus::kNotRefined;

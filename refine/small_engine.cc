@@ -14,7 +14,6 @@ namespace {
 using ParameterVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
 using ParameterMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 // Cost, gradient and curvature at one point, and how to get them.
 class ParameterEquations {

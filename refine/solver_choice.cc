@@ -1,6 +1,7 @@
 #include "rigel/refine/solver_choice.h"
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <string>
 
@@ -18,7 +19,7 @@ std::string SolverNamesWithAuto() { return std::string(kAutoSolver) + ", " + Sol
 
 std::vector<const SolverInfo*> SuggestSolvers(const MotionPrior& prior) {
   std::vector<const SolverInfo*> solvers;
-  for (const char* name : {"3pt", "4pt", "4pt-axis", "5pt+1"}) {
+  for (const char* name : {"3pt", "4pt", "4pt-axis", "5pt+1", "6pt-ventura", "17pt-li"}) {
     const SolverInfo* solver = FindSolver(name);
     Alignment alignment;
     std::string error;
@@ -29,22 +30,40 @@ std::vector<const SolverInfo*> SuggestSolvers(const MotionPrior& prior) {
 
 const SolverInfo& SuggestSolver(const MotionPrior& prior) { return *SuggestSolvers(prior).front(); }
 
-bool IsDoubtful(const MotionPrior& prior, const SolverInfo& solver, const Pose& pose,
+Doubt FindDoubt(const MotionPrior& prior, const SolverInfo& solver, const Pose& pose,
                 const GroupedMatches& matches, double threshold_px) {
   constexpr double kNoBound = std::numeric_limits<double>::infinity();
-  int inliers = 0, loose_inliers = 0;
-  matches.Score(pose, threshold_px, kNoBound, &inliers);
-  matches.Score(pose, 2.0 * threshold_px, kNoBound, &loose_inliers);
-  if (inliers < kDoubtfulInlierRatio * matches.size()) return true;
-  if (loose_inliers > kDoubtfulGrowth * inliers) return true;
+  Doubt doubt;
+  doubt.num_matches = matches.size();
+  matches.Score(pose, threshold_px, kNoBound, &doubt.num_inliers);
+  matches.Score(pose, 2.0 * threshold_px, kNoBound, &doubt.num_loose_inliers);
+  doubt.few_inliers = doubt.num_inliers < kDoubtfulInlierRatio * doubt.num_matches;
+  doubt.loose_residuals = doubt.num_loose_inliers > kDoubtfulGrowth * doubt.num_inliers;
   Alignment alignment;
   std::string error;
-  if (solver.prior == PriorKind::kNone || !MakeAlignment(prior, solver.prior, &alignment, &error)) {
-    return false;
+  if (solver.prior != PriorKind::kNone && MakeAlignment(prior, solver.prior, &alignment, &error)) {
+    const double angle = alignment.NearestAngle(pose.R);
+    doubt.from_prior = RotationError(alignment.Rotation(std::cos(angle), std::sin(angle)), pose.R);
+    doubt.leaves_prior = doubt.from_prior > DegToRad(kDoubtfulPriorDeg);
   }
-  const double angle = alignment.NearestAngle(pose.R);
-  const Eigen::Matrix3d nearest = alignment.Rotation(std::cos(angle), std::sin(angle));
-  return RotationError(nearest, pose.R) > DegToRad(kDoubtfulPriorDeg);
+  return doubt;
+}
+
+std::string Doubt::Reason() const {
+  std::string reason;
+  const auto add = [&reason](const char* format, auto... values) {
+    char text[128];
+    std::snprintf(text, sizeof(text), format, values...);
+    reason += (reason.empty() ? "" : "; ") + std::string(text);
+  };
+  if (few_inliers) {
+    add("only %d of %d matches agree with the motion", num_inliers, num_matches);
+  }
+  if (loose_residuals) {
+    add("%d more agree at twice the threshold", num_loose_inliers - num_inliers);
+  }
+  if (leaves_prior) add("the motion turned %.1f deg away from the prior", RadToDeg(from_prior));
+  return reason;
 }
 
 }  // namespace rigel

@@ -2,6 +2,7 @@
 #ifndef RIGEL_REFINE_SOLVER_CHOICE_H_
 #define RIGEL_REFINE_SOLVER_CHOICE_H_
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,22 +21,51 @@ bool IsSolverName(std::string_view name);
 std::string SolverNamesWithAuto();
 
 // The solvers that the priors allow, the most constrained first: 3pt (planar motion), 4pt (known
-// vertical), 4pt-axis (known axis), in the end 5pt+1, which needs none. Exact ones: they cost
-// little more than the first-order ones and hold in turns (docs/solver_choice.md has the sweep).
+// vertical), 4pt-axis (known axis), then those that need none: 5pt+1, which wants five matches of
+// one camera pair, 6pt-ventura, first order in the rotation, and 17pt-li. Exact ones where there
+// is a choice: they cost little more and hold in turns (docs/solver_choice.md has the sweep).
 std::vector<const SolverInfo*> SuggestSolvers(const MotionPrior& prior);
 
 // The first of them.
 const SolverInfo& SuggestSolver(const MotionPrior& prior);
 
-// Whether a less constrained solver should join: few of the matches agree with `pose`, or it turned
-// away from the solver's prior by more than kDoubtfulPriorDeg, or the threshold cuts through the
-// residuals: at twice the threshold there are kDoubtfulGrowth times as many inliers. Those of the
-// right motion are nearly all below it, and outliers lie far and wide.
+// What speaks against a motion that a solver led to.
 inline constexpr double kDoubtfulInlierRatio = 0.5;
 inline constexpr double kDoubtfulPriorDeg = 2.0;
 inline constexpr double kDoubtfulGrowth = 1.1;
-bool IsDoubtful(const MotionPrior& prior, const SolverInfo& solver, const Pose& pose,
+struct Doubt {
+  // Less than kDoubtfulInlierRatio of the matches agree.
+  bool few_inliers = false;
+  // The threshold cuts through the residuals: at twice the threshold there are kDoubtfulGrowth
+  // times as many inliers. Those of the right motion are nearly all below it, and outliers lie far
+  // and wide.
+  bool loose_residuals = false;
+  // The motion turned away from the solver's prior by more than kDoubtfulPriorDeg.
+  bool leaves_prior = false;
+
+  int num_matches = 0;
+  int num_inliers = 0;
+  int num_loose_inliers = 0;
+  double from_prior = 0.0;  // radians
+
+  bool Any() const { return few_inliers || SaysWrong(); }
+  // Few inliers alone may just be many outliers.
+  bool SaysWrong() const { return loose_residuals || leaves_prior; }
+  // One clause for each; empty if there is none.
+  std::string Reason() const;
+};
+
+Doubt FindDoubt(const MotionPrior& prior, const SolverInfo& solver, const Pose& pose,
                 const GroupedMatches& matches, double threshold_px);
+
+// What became of one of the solvers.
+struct SolverTrial {
+  std::string solver;
+  int iterations = 0;
+  int64_t hypotheses = 0;
+  int num_inliers = 0;  // of the best motion that it led to
+  std::string note;     // why it was chosen, left or not tried
+};
 
 }  // namespace rigel
 

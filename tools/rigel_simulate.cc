@@ -15,6 +15,7 @@
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/parallel.h"
 #include "rigel/problems/synthetic.h"
+#include "rigel/problems/whole_file.h"
 #include "rigel/tools/tool.h"
 
 DEFINE_string(
@@ -22,7 +23,10 @@ DEFINE_string(
     "directory that gets the match files 000000.matches, ...; made if missing; one with match "
     "files of other names is refused");
 DEFINE_int32(pairs, 50, "number of frame pairs");
-DEFINE_int32(num_cameras, 2, "cameras of the rig, 1 to 4");
+DEFINE_int32(num_cameras, 2, "cameras of the rig, 1 to 4; with --ring 1 to 16");
+DEFINE_bool(ring, false,
+            "cameras on a circle of 1 m radius in the plane perpendicular to the body's down, at "
+            "equal angles, facing outwards; matches between cameras are of neighbours");
 DEFINE_int32(num_matches, 200, "number of matches of each pair");
 DEFINE_double(noise_px, 0.5, "1-sigma image noise on each coordinate of both views");
 DEFINE_double(rotation_deg, 1, "rotation angle of each pair");
@@ -56,6 +60,10 @@ constexpr char kUsage[] =
     "points uniform in the image of view 1, 5 to 30 m away. The files hold the truth, the noise\n"
     "and the exact gravity, axis and (planar motion) normal.\n"
     "\n"
+    "  rigel_simulate --output=DIR --ring --num_cameras=8 --rotation_deg=10\n"
+    "\n"
+    "A rig that looks all round: such cameras on a circle of 1 m radius, exactly.\n"
+    "\n"
     "  rigel_simulate --output=DIR --motion=random --moving_share=0.3\n"
     "\n"
     "With a car, a box 5 to 15 m in front of the rig, that moves over the ground and turns by up\n"
@@ -86,11 +94,8 @@ std::vector<std::string> OtherMatchFiles(const std::string& directory, int num_p
   fs::directory_iterator entry(directory, *code);
   for (; !*code && entry != fs::directory_iterator(); entry.increment(*code)) {
     const std::string name = entry->path().filename().string();
-    const std::string ending = ".matches";
     std::error_code ignored;
-    if (name.size() > ending.size() &&
-        name.compare(name.size() - ending.size(), ending.size(), ending) == 0 &&
-        !IsOwn(name, num_pairs) && !entry->is_directory(ignored)) {
+    if (IsMatchFileName(name) && !IsOwn(name, num_pairs) && !entry->is_directory(ignored)) {
       others.push_back(name);
     }
   }
@@ -139,6 +144,7 @@ int Run() {
     return UsageError("--rotation_axis=" + FLAGS_rotation_axis + ": expected y or random");
   }
   options.num_cameras = FLAGS_num_cameras;
+  options.ring = FLAGS_ring;
   options.num_matches = FLAGS_num_matches;
   options.noise_px = FLAGS_noise_px;
   options.rotation_deg = FLAGS_rotation_deg;
@@ -189,6 +195,9 @@ int Run() {
            "empty the directory or name another\n";
     return kExitFailed;
   }
+  RemoveLeftOvers(FLAGS_output, [](const std::string& name) {
+    return std::filesystem::path(name).extension() == ".matches";
+  });
   error = WriteFiles(options, motions, num_pairs);
   if (!error.empty()) {
     std::cerr << error << "\n";
