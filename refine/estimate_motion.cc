@@ -188,11 +188,11 @@ MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pai
     estimate.message = std::to_string(estimate.num_inliers) + " of " +
                        std::to_string(matches.size()) +
                        " matches agree on a motion, no more than chance allows";
+    if (estimate.stopped != StopReason::kNone) estimate.message += "; " + stop.Message();
     return estimate;
   }
-  const Doubt doubt =
-      FindDoubt(pair.prior, *search.solver, MotionOfPoint(estimate.pose, centre), matches,
-                options.ransac.threshold_px);
+  const Doubt doubt = FindDoubt(pair.prior, *search.solver, MotionOfPoint(estimate.pose, centre),
+                                matches, options.ransac.threshold_px);
   estimate.doubtful = doubt.Any();
   estimate.doubt = doubt.Reason();
   if (estimate.status == EstimateStatus::kSuccess && options.refine_motion && options.check_rig &&

@@ -87,6 +87,22 @@ TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
   }
 }
 
+// Nothing is found in a nanosecond; an hour changes nothing.
+TEST_F(EstimateTest, ATimeLimitIsSaidWhereItEndedTheSearch) {
+  const std::string matches = Simulate("in", {"--pairs=1", "--num_matches=2000"});
+  const Outcome run =
+      RunTool("estimate", {"--matches=" + matches, "--time_limit_ms=1e-6", "--json=-"});
+  const Json pair = ParseReport(run.out)["pairs"][0];
+  EXPECT_EQ(pair["stopped"], "time limit");
+  EXPECT_THAT(pair["message"].get<std::string>(), HasSubstr("time limit of 1e-06 ms"));
+  EXPECT_THAT(run.err, HasSubstr("time limit"));
+
+  const Args args = {"--matches=" + matches, "--no_times"};
+  Json plain = OnlyPair(args);
+  EXPECT_EQ(OnlyPair(args + Args{"--time_limit_ms=3600000"}), plain);
+  EXPECT_FALSE(plain.contains("stopped"));
+}
+
 TEST_F(EstimateTest, WithoutRefinementOnlyTheRawMotion) {
   const std::string matches = Simulate("in", {"--pairs=1", "--inter_share=0.5"});
   const Json pair = OnlyPair({"--matches=" + matches, "--refine=none"});

@@ -163,6 +163,8 @@ TEST(Flags, ValueOutOfRangeIsAUsageErrorBeforeAnyFileIsRead) {
         {"--confidence=1", "confidence must lie in (0, 1)"},
         {"--confidence=0", "confidence must lie in (0, 1)"},
         {"--max_iterations=0", "max_iterations must be at least 1"},
+        {"--time_limit_ms=-1", "time_limit_ms=-1: expected a number from 0"},
+        {"--time_limit_ms=nan", "time_limit_ms=nan: expected a number from 0"},
         {"--threads=0", "1 to 1024"},
         {"--threads=2000", "1 to 1024"},
         {"--seed=-1", "seed"},
