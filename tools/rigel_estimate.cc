@@ -163,6 +163,27 @@ bool WriteTrajectories(const std::vector<Trajectory>& trajectories, const std::s
   return true;
 }
 
+// Of a solver that was named; the table says it of auto's.
+void ReportDoubts(const EstimateReport& report) {
+  if (FLAGS_solver == kAutoSolver) return;
+  int count = 0;
+  size_t first = 0;
+  for (size_t k = report.estimates.size(); k-- > 0;) {
+    if (!report.estimates[k].HasMotion() || !report.estimates[k].doubtful) continue;
+    ++count;
+    first = k;
+  }
+  if (count == 0) return;
+  std::cerr << "doubtful: " << count << " of " << report.estimates.size()
+            << (report.estimates.size() == 1 ? " motion, " : " motions, ")
+            << (count == 1 ? "" : "the first ") << PrintablePath(report.pairs[first].name) << ": "
+            << report.estimates[first].doubt << "; "
+            << (FindSolver(FLAGS_solver)->prior == PriorKind::kNone
+                    ? "are most of the matches outliers?"
+                    : "is the prior right? --solver=auto does without it where it is not")
+            << "\n";
+}
+
 int Run() {
   ComparisonOptions options;
   std::string error;
@@ -229,6 +250,7 @@ int Run() {
     }
   }
 
+  ReportDoubts(report);
   report.refined = estimate.refine_motion;
   // An empty shard has nothing to chain, and nothing is wrong with it.
   if (Chained() && !report.pairs.empty()) ok = Chain(positions, &report) && ok;
