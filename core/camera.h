@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "rigel/core/eigen_types.h"
+
 namespace rigel {
 
 // pixel = (fx x + cx, fy y + cy) for the normalized image point u = (x, y, 1); +z forward, +x
@@ -17,16 +19,16 @@ struct PinholeCamera {
   int width = 0;
   int height = 0;
 
-  Eigen::Vector3d Normalize(const Eigen::Vector2d& pixel) const {
+  Eigen::Vector3d Normalize(const Pixel& pixel) const {
     return {(pixel.x() - cx) / fx, (pixel.y() - cy) / fy, 1.0};
   }
 
   // X in the camera frame; X.z() must not be zero.
-  Eigen::Vector2d Project(const Eigen::Vector3d& X) const {
+  Pixel Project(const Eigen::Vector3d& X) const {
     return {fx * X.x() / X.z() + cx, fy * X.y() / X.z() + cy};
   }
 
-  bool InImage(const Eigen::Vector2d& pixel) const {
+  bool InImage(const Pixel& pixel) const {
     return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < width && pixel.y() < height;
   }
 };

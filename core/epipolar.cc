@@ -58,7 +58,7 @@ Eigen::Matrix3d CentredFundamental(const Eigen::Matrix3d& E, const PinholeCamera
   return inv_j.asDiagonal() * E * inv_i.asDiagonal();
 }
 
-Eigen::Vector3d CentredPixel(const PinholeCamera& camera, const Eigen::Vector2d& pixel) {
+Eigen::Vector3d CentredPixel(const PinholeCamera& camera, const Pixel& pixel) {
   return {pixel.x() - camera.cx, pixel.y() - camera.cy, 1.0};
 }
 

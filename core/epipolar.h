@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "rigel/core/eigen_types.h"
 #include "rigel/core/match.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/rays.h"
@@ -48,7 +49,7 @@ Eigen::Matrix3d CentredFundamental(const Eigen::Matrix3d& E, const PinholeCamera
                                    const PinholeCamera& camera_j);
 
 // p = (pixel - principal point, 1).
-Eigen::Vector3d CentredPixel(const PinholeCamera& camera, const Eigen::Vector2d& pixel);
+Eigen::Vector3d CentredPixel(const PinholeCamera& camera, const Pixel& pixel);
 
 // Signed Sampson error in pixels, r = C / |dC/d(pixel_i, pixel_j)|, for a CentredFundamental F.
 // It is the distance of the match from the nearest exact match to first order, it does not

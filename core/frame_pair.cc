@@ -1,5 +1,9 @@
 #include "rigel/core/frame_pair.h"
 
+#include <cmath>
+
+#include <Eigen/LU>
+
 namespace rigel {
 
 bool FramePair::IsValid(std::string* error) const {
@@ -16,7 +20,25 @@ bool FramePair::IsValid(std::string* error) const {
       return false;
     }
   }
-  return true;
+  for (const auto* time : {&time1, &time2}) {
+    if (time->has_value() && !std::isfinite(**time)) {
+      *error = "a time is not finite";
+      return false;
+    }
+  }
+  if (truth) {
+    const Eigen::Matrix3d& R = truth->R;
+    if (!truth->AllFinite() || !((R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < 1e-6) ||
+        R.determinant() < 0) {
+      *error = "the truth is not a finite motion with a rotation matrix";
+      return false;
+    }
+  }
+  if (noise_px && !(*noise_px > 0 && std::isfinite(*noise_px))) {
+    *error = "noise_px must be positive and finite";
+    return false;
+  }
+  return prior.IsValid(error);
 }
 
 }  // namespace rigel

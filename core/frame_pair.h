@@ -23,8 +23,9 @@ struct FramePair {
   std::optional<Pose> truth;           // f2_from_f1
   std::optional<double> noise_px;      // 1-sigma image noise where it is known
 
-  // False with a message if the rig is invalid, a match names a camera that is not there or a
-  // pixel is not finite.
+  // False with a message if the rig or the prior is invalid, a match names a camera that is not
+  // there, a pixel or time is not finite, the truth is no finite motion or noise_px is not
+  // positive and finite. The score of a match may be NaN: it is then the worst.
   bool IsValid(std::string* error) const;
 };
 

@@ -2,7 +2,7 @@
 #ifndef RIGEL_CORE_MATCH_H_
 #define RIGEL_CORE_MATCH_H_
 
-#include <Eigen/Core>
+#include "rigel/core/eigen_types.h"
 
 namespace rigel {
 
@@ -11,13 +11,14 @@ namespace rigel {
 // 0 if unknown.
 struct Match {
   int camera1 = 0;
-  Eigen::Vector2d pixel1 = Eigen::Vector2d::Zero();
+  Pixel pixel1 = Pixel::Zero();
   int camera2 = 0;
-  Eigen::Vector2d pixel2 = Eigen::Vector2d::Zero();
+  Pixel pixel2 = Pixel::Zero();
   double score = 0.0;
 
   bool IsIntra() const { return camera1 == camera2; }
 };
+static_assert(kSameLayoutEverywhere<Match>, "no member of Match may be aligned");
 
 }  // namespace rigel
 

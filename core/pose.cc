@@ -6,15 +6,15 @@
 
 namespace rigel {
 
-Pose Pose::FromQuaternion(const Eigen::Quaterniond& q, const Eigen::Vector3d& t) {
+Pose Pose::FromQuaternion(const UnalignedQuaternion& q, const Eigen::Vector3d& t) {
   Pose pose;
   pose.R = q.normalized().toRotationMatrix();
   pose.t = t;
   return pose;
 }
 
-Eigen::Quaterniond Pose::Quaternion() const {
-  Eigen::Quaterniond q(R);
+UnalignedQuaternion Pose::Quaternion() const {
+  UnalignedQuaternion q(R);
   q.normalize();
   if (q.w() < 0) q.coeffs() = -q.coeffs();
   return q;
@@ -100,11 +100,11 @@ Eigen::Matrix3d SmallestRotation(const Eigen::Vector3d& a, const Eigen::Vector3d
   return ExpSO3(std::atan2(sin_angle, c) / sin_angle * v);
 }
 
-Eigen::Matrix<double, 3, 2> TangentBasis(const Eigen::Vector3d& v) {
+Matrix3x2d TangentBasis(const Eigen::Vector3d& v) {
   // Start from the axis that v is least aligned with.
   int axis = 0;
   v.cwiseAbs().minCoeff(&axis);
-  Eigen::Matrix<double, 3, 2> basis;
+  Matrix3x2d basis;
   basis.col(0) = v.cross(Eigen::Vector3d::Unit(axis)).normalized();
   basis.col(1) = v.cross(basis.col(0));
   return basis;

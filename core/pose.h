@@ -10,6 +10,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "rigel/core/eigen_types.h"
+
 namespace rigel {
 
 // f2_from_f1: X_2 = R X_1 + t. Invariant: R is a rotation (R'R = I, det R = 1).
@@ -18,16 +20,17 @@ struct Pose {
   Eigen::Vector3d t = Eigen::Vector3d::Zero();
 
   // q need not be of unit length; it must not be zero.
-  static Pose FromQuaternion(const Eigen::Quaterniond& q, const Eigen::Vector3d& t);
+  static Pose FromQuaternion(const UnalignedQuaternion& q, const Eigen::Vector3d& t);
 
   // Unit quaternion with w >= 0.
-  Eigen::Quaterniond Quaternion() const;
+  UnalignedQuaternion Quaternion() const;
 
   Pose Inverse() const;
   Eigen::Vector3d operator*(const Eigen::Vector3d& X) const { return R * X + t; }
 
   bool AllFinite() const { return R.allFinite() && t.allFinite(); }
 };
+static_assert(kSameLayoutEverywhere<Pose>, "no member of Pose may be aligned");
 
 // c_from_a = c_from_b * b_from_a.
 Pose operator*(const Pose& c_from_b, const Pose& b_from_a);
@@ -52,7 +55,7 @@ Eigen::Matrix3d SmallestRotation(const Eigen::Vector3d& a, const Eigen::Vector3d
 
 // Two unit vectors that complete the unit vector v to a right-handed orthonormal basis, as the
 // columns of a 3x2 matrix. A continuous choice is not promised.
-Eigen::Matrix<double, 3, 2> TangentBasis(const Eigen::Vector3d& v);
+Matrix3x2d TangentBasis(const Eigen::Vector3d& v);
 
 }  // namespace rigel
 

@@ -3,8 +3,11 @@
 #define RIGEL_CORE_PRIOR_H_
 
 #include <optional>
+#include <string>
 
 #include <Eigen/Core>
+
+#include "rigel/core/eigen_types.h"
 
 namespace rigel {
 
@@ -24,10 +27,21 @@ struct MotionPrior {
   std::optional<Eigen::Vector3d> normal;
   std::optional<double> normal_sigma;
 
+  // Where the vehicle's front is in the body frame: for Ackermann motion.
+  std::optional<Eigen::Vector3d> forward;
+
   // |t| from odometry, metres, and its standard deviation.
   std::optional<double> distance;
   double distance_sigma = 0.0;
+
+  // False with a message if a direction is not of unit length within kMaxUnitError, a sigma is not
+  // positive (that of the distance: negative) or anything is not finite.
+  bool IsValid(std::string* error) const;
 };
+static_assert(kSameLayoutEverywhere<MotionPrior>, "no member of MotionPrior may be aligned");
+
+// Directions that are off by less are normalized where they are used.
+inline constexpr double kMaxUnitError = 1e-3;
 
 // What a minimal solver needs to be known.
 enum class PriorKind {

@@ -2,7 +2,7 @@
 
 namespace rigel {
 
-Ray MakeRay(const RigCamera& camera, const Eigen::Vector2d& pixel) {
+Ray MakeRay(const RigCamera& camera, const Pixel& pixel) {
   return {(camera.Q * camera.intrinsics.Normalize(pixel)).normalized(), camera.s};
 }
 

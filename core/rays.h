@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "rigel/core/eigen_types.h"
 #include "rigel/core/match.h"
 #include "rigel/core/rig.h"
 
@@ -28,8 +29,9 @@ struct RayPair {
   Ray ray1;
   Ray ray2;
 };
+static_assert(kSameLayoutEverywhere<RayPair>, "no member of Ray may be aligned");
 
-Ray MakeRay(const RigCamera& camera, const Eigen::Vector2d& pixel);
+Ray MakeRay(const RigCamera& camera, const Pixel& pixel);
 
 // The match's cameras must be in the rig.
 RayPair MakeRayPair(const Rig& rig, const Match& match);

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "rigel/core/camera.h"
+#include "rigel/core/eigen_types.h"
 
 namespace rigel {
 
@@ -17,6 +18,7 @@ struct RigCamera {
   Eigen::Matrix3d Q = Eigen::Matrix3d::Identity();
   Eigen::Vector3d s = Eigen::Vector3d::Zero();
 };
+static_assert(kSameLayoutEverywhere<RigCamera>, "no member of RigCamera may be aligned");
 
 // Camera k of the paper is rig.cameras[k].
 struct Rig {

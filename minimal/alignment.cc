@@ -14,7 +14,7 @@ bool UnitDirection(const std::optional<Eigen::Vector3d>& v, const char* name, Ei
     *error = std::string("the prior has no ") + name;
     return false;
   }
-  if (!(std::abs(v->norm() - 1.0) < 1e-3)) {
+  if (!(std::abs(v->norm() - 1.0) < kMaxUnitError)) {
     *error = std::string("the prior's ") + name + " is not a unit vector";
     return false;
   }
@@ -57,6 +57,11 @@ bool MakeAlignment(const MotionPrior& prior, PriorKind kind, Alignment* alignmen
       }
       result.A1 = SmallestRotation(n, y);
       result.A2 = result.A1;
+      Eigen::Vector3d forward;
+      if (planar && prior.forward.has_value()) {
+        if (!UnitDirection(prior.forward, "forward", &forward, error)) return false;
+        result.forward = result.A1 * forward;
+      }
       break;
     }
   }

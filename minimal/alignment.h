@@ -22,6 +22,9 @@ struct Alignment {
   // every intra-camera match.
   bool contains_identity = true;
 
+  // The prior's forward direction, aligned: A1 f. Zero where it states none.
+  Eigen::Vector3d forward = Eigen::Vector3d::Zero();
+
   // R = B0 + cos(a) Bc + sin(a) Bs.
   Eigen::Matrix3d B0, Bc, Bs;
 
@@ -47,7 +50,8 @@ struct Alignment {
 // kVertical: A1 takes gravity1 to Y and A2 = A1 M with M the smallest rotation that takes gravity2
 // to gravity1, so that a = 0 is the smallest rotation which the prior allows. kAxis and kPlanar:
 // A1 = A2 = A with A n = Y. kNone: identities. False with a message if `prior` lacks what `kind`
-// needs, or a direction is not a finite unit vector (to 1e-3; it is normalized).
+// needs, or a direction is not a finite unit vector (to 1e-3; it is normalized). Of the prior's
+// forward direction only the planar solvers make use, it is never needed here.
 bool MakeAlignment(const MotionPrior& prior, PriorKind kind, Alignment* alignment,
                    std::string* error);
 

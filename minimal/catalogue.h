@@ -28,6 +28,8 @@ struct SolverInfo {
   SampleKind sampling;
   SolveFunction solve;
   const char* source;  // one line: publication and equations
+  // About what a sample takes on one core of 2020, where that is much: RansacOptions::max_work_us.
+  double nominal_us = 1.0;
 };
 
 // In the order in which tables list them.

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <numeric>
 
+#include "rigel/core/rig_centre.h"
+
 namespace rigel {
 namespace {
 
@@ -66,6 +68,12 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
       directions_[(3 + i) * n + k] = rays.ray2.x[i];
     }
   }
+}
+
+GroupedMatches GroupedMatches::WithOrigin(const Eigen::Vector3d& origin) const {
+  GroupedMatches moved = *this;
+  moved.rig_ = rigel::WithOrigin(rig_, origin);
+  return moved;
 }
 
 std::vector<size_t> GroupedMatches::StretchBegins(size_t count) const {

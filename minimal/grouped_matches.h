@@ -29,6 +29,9 @@ class GroupedMatches {
   // `matches` must name cameras of `rig` only and have finite pixels. Copies what it needs.
   GroupedMatches(const Rig& rig, const std::vector<Match>& matches);
 
+  // The same matches with the origin of the rig's body frame moved (rig_centre.h).
+  GroupedMatches WithOrigin(const Eigen::Vector3d& origin) const;
+
   const Rig& rig() const { return rig_; }
   int size() const { return static_cast<int>(matches_.size()); }
   const std::vector<MatchGroup>& groups() const { return groups_; }

@@ -3,13 +3,13 @@
 namespace rigel {
 
 bool RansacOptions::IsValid(std::string* error) const {
-  if (!(threshold_px > 0) || !std::isfinite(threshold_px)) {
-    *error = "threshold_px must be positive and finite";
+  if (!(threshold_px >= 0) || !std::isfinite(threshold_px)) {
+    *error = "threshold_px must be positive and finite, or 0 for auto";
     return false;
   }
   // Beyond these its square is nothing to compute with.
-  if (threshold_px < 1e-6 || threshold_px > 1e6) {
-    *error = "threshold_px must lie in 1e-6 to 1e6";
+  if (threshold_px != kAutoThresholdPx && (threshold_px < 1e-12 || threshold_px > 1e12)) {
+    *error = "threshold_px must lie in 1e-12 to 1e12";
     return false;
   }
   if (score != ScoreKind::kMsac && score != ScoreKind::kMagsac &&
@@ -35,6 +35,14 @@ bool RansacOptions::IsValid(std::string* error) const {
   }
   if (num_finalists < 0 || num_finalists > kMaxFinalists) {
     *error = "num_finalists must lie in 0.." + std::to_string(kMaxFinalists);
+    return false;
+  }
+  if (max_scored < 1) {
+    *error = "max_scored must be at least 1";
+    return false;
+  }
+  if (!(max_work_us > 0)) {
+    *error = "max_work_us must be positive";
     return false;
   }
   return true;

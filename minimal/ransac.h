@@ -16,7 +16,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "rigel/core/pixel_unit.h"
 #include "rigel/core/random.h"
+#include "rigel/core/stop.h"
 
 namespace rigel {
 
@@ -32,7 +34,9 @@ enum class ScoreKind {
 };
 
 struct RansacOptions {
-  double threshold_px = 1.5;   // in 1e-6 to 1e6; 3 sigma keeps the estimate efficient
+  // In 1e-12 to 1e12; 3 sigma keeps the estimate efficient. kAutoThresholdPx: 1.5, or 1/300 of the
+  // shortest focal length where that is less; for EstimateMotion(), which resolves it.
+  double threshold_px = kAutoThresholdPx;
   double confidence = 0.9999;  // in (0, 1): that one sample of inliers was drawn
   int max_iterations = 10000;  // >= 1
   // At least so many: noise makes most samples of inliers poor hypotheses.
@@ -55,6 +59,13 @@ struct RansacOptions {
   // well at the threshold, and the one that fits best may be far from the truth. 0 to
   // kMaxFinalists.
   int num_finalists = 4;
+  // Of more matches than these, hypotheses are scored on so many, drawn evenly over their order:
+  // they tell good from bad as well as all do, and time stays bounded. The samples come from all.
+  int max_scored = 4096;  // >= 1
+  // The loop ends once its work, counted and not timed, so that the result is the same on every
+  // machine, would have taken about so long on one core of 2020. At the defaults only
+  // 6pt-stewenius, and rigs with thousands of camera pairs, come to that before max_iterations.
+  double max_work_us = 1.5e6;  // > 0; may be infinite
   uint64_t seed = 1;
 
   bool IsValid(std::string* error) const;
@@ -71,6 +82,7 @@ struct RansacResult {
   double minimal_score = 0.0;
   int iterations = 0;
   int64_t hypotheses = 0;
+  double work_us = 0.0;  // see RansacOptions::max_work_us
 };
 
 // What Ransac() asks of a solver. All methods are const; the solver owns the data.
@@ -78,6 +90,7 @@ struct RansacResult {
 //   num_data(), sample_size()
 //   Draw(Random*, int*)        false if no sample can be drawn
 //   MinimalSolver(sample, Solutions*)   number of solutions
+//   Work(num_solutions)        nominal microseconds of a sample and of scoring its solutions
 //   QuickScore(model, bound)   not above Score() of the model Admit() makes of it; may stop early
 //                              above `bound`
 //   BailsOut(model, best)      true if it is very unlikely that QuickScore() is below `best`
@@ -106,6 +119,7 @@ struct IsRansacSolver<
             bool{std::declval<const S&>().Draw(std::declval<Random*>(), std::declval<int*>())}),
         decltype(int{std::declval<const S&>().MinimalSolver(
             std::declval<const int*>(), std::declval<typename S::Solutions*>())}),
+        decltype(double{std::declval<const S&>().Work(0)}),
         decltype(double{
             std::declval<const S&>().QuickScore(std::declval<const typename S::Model&>(), 0.0)}),
         decltype(
@@ -166,7 +180,8 @@ struct Finalists {
 
 // A run that can be stopped and gone on with, so that several share one budget of iterations. How
 // they are divided does not change what they find. All that is passed must outlive the run;
-// `options` must be valid. No heap allocation but what the solver's methods make.
+// `options` must be valid. `stop` (may be null) is asked before each iteration; what was found by
+// then is the result. No heap allocation but what the solver's methods make.
 template <class Solver>
 class RansacRun {
  public:
@@ -174,10 +189,11 @@ class RansacRun {
   using Model = typename Solver::Model;
 
   RansacRun(const Solver& solver, const RansacOptions& options,
-            typename Solver::Solutions* solutions)
+            typename Solver::Solutions* solutions, Stop* stop = nullptr)
       : solver_(solver),
         options_(options),
         solutions_(solutions),
+        stop_(stop),
         random_(options.seed),
         capacity_(options.local_optimization ? options.num_finalists : 0),
         needed_(options.max_iterations) {
@@ -189,19 +205,21 @@ class RansacRun {
   int Advance(int iterations) {
     const int before = result_.iterations;
     const int end = before + std::min(iterations, options_.max_iterations - before);
-    while (result_.iterations < end && !Done()) Iterate();
+    while (result_.iterations < end && !Done() && !Stopped()) Iterate();
     return result_.iterations - before;
   }
 
-  // A sample of inliers was drawn with the confidence asked for, or there is none.
+  // A sample of inliers was drawn with the confidence asked for, or there is none, or the work is
+  // used up.
   bool Done() const {
-    return exhausted_ || result_.iterations >= std::min(options_.max_iterations,
+    return exhausted_ || !(result_.work_us < options_.max_work_us) || result_.iterations >= std::min(options_.max_iterations,
                                                         std::max(needed_, options_.min_iterations));
   }
 
   // Optimizes the best hypothesis and the finalists: at the end, or to see how good they are.
   void OptimizeFinalists() {
     OptimizeBest();
+    if (Stopped()) return;
     // From the best one too: few matches of large parallax may be out of its reach.
     const Model best = result_.best;
     constexpr int kMaxWorse = 2;
@@ -222,6 +240,8 @@ class RansacRun {
 
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  bool Stopped() const { return stop_ != nullptr && stop_->Asked(); }
 
   double Bound(double score) const { return options_.early_termination ? score : kInfinity; }
 
@@ -260,6 +280,7 @@ class RansacRun {
       return;
     }
     solver_.MinimalSolver(sample, solutions_);
+    result_.work_us += solver_.Work(static_cast<int>(solutions_->size()));
     for (int k = 0; k < static_cast<int>(solutions_->size()); ++k) {
       ++result_.hypotheses;
       Judge((*solutions_)[k]);
@@ -297,6 +318,7 @@ class RansacRun {
   const Solver& solver_;
   const RansacOptions& options_;
   typename Solver::Solutions* solutions_;
+  Stop* stop_;
   Random random_;
   const int capacity_;  // of the finalists
   ransac_internal::Finalists<Model> finalists_;
@@ -309,8 +331,9 @@ class RansacRun {
 // A whole run. `options` must be valid.
 template <class Solver>
 RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOptions& options,
-                                            typename Solver::Solutions* solutions) {
-  RansacRun<Solver> run(solver, options, solutions);
+                                            typename Solver::Solutions* solutions,
+                                            Stop* stop = nullptr) {
+  RansacRun<Solver> run(solver, options, solutions, stop);
   run.Advance(options.max_iterations);
   run.OptimizeFinalists();
   return run.result();

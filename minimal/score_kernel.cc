@@ -124,6 +124,7 @@ RIGEL_KERNEL_BODY double Sum(const PixelArrays& pixels, const RayArrays* rays, c
       }
     }
     for (int i = block.size; i < kBlock; ++i) e[i] = 0.0;
+    static_assert(kBlock == 8 * kLanes, "the sum is over eight vectors");
     const Lanes even = (LanesAt(e) + LanesAt(e + 16)) + (LanesAt(e + 8) + LanesAt(e + 24));
     const Lanes odd = (LanesAt(e + 4) + LanesAt(e + 20)) + (LanesAt(e + 12) + LanesAt(e + 28));
     sum += SumOf(even + odd);

@@ -124,7 +124,7 @@ Eigen::Vector4d NullVector(const double (*M)[4]) {
   // Elimination with complete pivoting.
   double T[6][4];
   int column[4] = {0, 1, 2, 3};
-  std::copy(M[0], M[0] + 24, T[0]);
+  for (int r = 0; r < 6; ++r) std::copy(M[r], M[r] + 4, T[r]);
   for (int k = 0; k < 3; ++k) {
     double largest = -1.0;
     int entry = 5 * k;

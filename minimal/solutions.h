@@ -16,6 +16,7 @@ struct Solution : Pose {
   // reference match has unit length.
   bool has_scale = true;
 };
+static_assert(kSameLayoutEverywhere<Solution>, "no member of Solution may be aligned");
 
 class Solutions {
  public:

@@ -16,8 +16,8 @@ constexpr double kNegligible = 1e-12;
 int Solve2ptAckermann(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
   solutions->clear();
   const Alignment& alignment = matches.alignment();
-  double fx = alignment.A1(0, 2);
-  double fz = alignment.A1(2, 2);
+  double fx = alignment.forward.x();
+  double fz = alignment.forward.z();
   const double f_norm = std::sqrt(fx * fx + fz * fz);
   if (!(f_norm > 1e-9)) return 0;
   fx /= f_norm;

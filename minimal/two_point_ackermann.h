@@ -1,9 +1,9 @@
 // 2pt-ackermann: two matches, planar motion along a circular arc, exact.
 //
 // A vehicle steered by its front wheels turns about a point on the line of its rear axle. If the
-// body's origin is on that axle and body +z is straight ahead, a turn by a moves the origin along
-// the chord that lies half way between the two headings. With f the direction of body +z within
-// the plane, under X_2 = R X_1 + t,
+// body's origin is on that axle, a turn by a moves the origin along the chord that lies half way
+// between the two headings. With f the prior's forward direction within the plane (its sign is no
+// matter), under X_2 = R X_1 + t,
 //   R = R_y(a),   t = -rho R_y(a/2) f      (aligned; rho > 0 forwards, metres along the chord)
 // so t' = R_y(-a/2) t = -rho f does not turn, and with z = tan(a/2) a match says
 //   tau e(z) + k(z) = 0,   tau = -rho sqrt(1 + z^2),
@@ -13,9 +13,9 @@
 // quadratic, whose root 0 is driving straight ahead, without scale.
 // Source: Lee, Fraundorfer, Pollefeys, "Motion Estimation for Self-Driving Cars with a Generalized
 //   Camera", CVPR 2013, the 2-point algorithm under the Ackermann model.
-// Units: metres, radians. Degenerate: body +z along the plane's normal, rays that do not move (no
-//   solution); straight ahead seen by intra-camera matches, or a camera above the body's
-//   origin (has_scale = false).
+// Units: metres, radians. Degenerate: no forward direction, or one along the plane's normal, rays
+//   that do not move (no solution); straight ahead seen by intra-camera matches, or a camera above
+//   the body's origin (has_scale = false).
 #ifndef RIGEL_MINIMAL_TWO_POINT_ACKERMANN_H_
 #define RIGEL_MINIMAL_TWO_POINT_ACKERMANN_H_
 

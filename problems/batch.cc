@@ -7,9 +7,9 @@
 namespace rigel {
 
 bool LoadPair(const ComparisonOptions& options, const std::string& path, int position,
-              FramePair* pair, std::string* error) {
+              FramePair* pair, std::string* error, AppliedAxes* applied) {
   if (!ReadMatchFile(path, pair, error) ||
-      !ApplyPriorSource(options.prior, position, pair, error)) {
+      !ApplyPriorSource(options.prior, position, pair, error, applied)) {
     return false;
   }
   SelectMatches(options.use, pair);
@@ -57,14 +57,16 @@ FileComparison CompareFiles(const ComparisonOptions& options, const std::vector<
   }
   for (BatchItem<Results>& item : items) {
     if (!item.error.empty()) {
-      comparison.errors.push_back(item.error);
+      (item.pair.name.empty() ? comparison.errors : comparison.without_truth).push_back(item.error);
     } else if (!item.pair.truth.has_value()) {
-      comparison.errors.push_back(item.pair.name + ": has no truth line, nothing to compare with");
+      comparison.without_truth.push_back(item.pair.name +
+                                         ": has no truth line, nothing to compare with");
     } else {
       for (size_t s = 0; s < kept.size(); ++s) {
         comparison.solvers[s].pairs.push_back(std::move(item.result[kept[s]]));
       }
       comparison.pairs.push_back(std::move(item.pair));
+      comparison.axes.push_back(item.axes);
     }
     item = BatchItem<Results>();
   }

@@ -18,16 +18,17 @@ namespace rigel {
 
 // Reads a file, keeps the matches that options.use names and applies options.prior. `position` is
 // the place of the file among all of the input, whatever part of it this run reads: it fixes the
-// pair's random numbers. False with a message if that fails.
+// pair's random numbers. False with a message if that fails. `applied` may be null.
 bool LoadPair(const ComparisonOptions& options, const std::string& path, int position,
-              FramePair* pair, std::string* error);
+              FramePair* pair, std::string* error, AppliedAxes* applied = nullptr);
 
 // What is left of one file.
 template <class Result>
 struct BatchItem {
   int position = 0;   // among all of the input
   std::string error;  // not empty: it could not be read or worked on, and there is nothing else
-  FramePair pair;     // without rig and matches
+  FramePair pair;     // without rig and matches; has a name where it was read, whatever the error
+  AppliedAxes axes;
   Result result{};
 };
 
@@ -45,7 +46,7 @@ std::vector<BatchItem<Result>> RunBatch(const ComparisonOptions& options,
     item.position = first + k;
     // One file that there is no memory for is no reason to lose the others.
     try {
-      if (LoadPair(options, paths[k], item.position, &item.pair, &item.error)) {
+      if (LoadPair(options, paths[k], item.position, &item.pair, &item.error, &item.axes)) {
         item.result = work(item.pair);
         item.pair.rig = Rig();
         item.pair.matches = std::vector<Match>();
@@ -63,7 +64,10 @@ std::vector<BatchItem<Result>> RunBatch(const ComparisonOptions& options,
 struct FileComparison {
   std::vector<FramePair> pairs;        // those compared, in order, without rig and matches
   std::vector<SolverResults> solvers;  // results for each of `pairs`
-  std::vector<std::string> errors;     // why the other files are not among them, in order
+  std::vector<AppliedAxes> axes;       // of their priors
+  // Why the other files are not among them, in order: they could not be read or worked on; they
+  // have no truth line, which is needed.
+  std::vector<std::string> errors, without_truth;
 };
 
 // Runs options.solvers or, if these are empty, all whose prior every pair has and that

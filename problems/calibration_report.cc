@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/csv.h"
+#include "rigel/problems/printable.h"
+#include "rigel/problems/report_json.h"
 #include "rigel/problems/table.h"
 
 namespace rigel {
@@ -27,6 +30,20 @@ std::string DegText(double radians) { return FormatNumber(RadToDeg(radians), 4) 
 
 std::string SigmaText(double radians) {
   return radians < 0 ? "not observable" : "sd " + DegText(radians);
+}
+
+// In lines of 100 columns at most, indented by two.
+std::string Wrapped(const std::string& message) {
+  std::istringstream words(message);
+  std::string text, line = " ";
+  for (std::string word; words >> word;) {
+    if (line.size() + 1 + word.size() > 100) {
+      text += line + "\n";
+      line = " ";
+    }
+    line += " " + word;
+  }
+  return text + line + "\n";
 }
 
 Json VectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -57,7 +74,7 @@ std::string CalibrationText(const CalibrationReport& report) {
     text += "\nmotion plane, from " + std::to_string(p.translations) + " translations and " +
             std::to_string(p.rotations) + " rotations\n";
     if (p.level == CalibrationLevel::kNone) {
-      text += "  not observable: " + p.message + "\n";
+      text += Wrapped("not determined: " + p.message);
     } else {
       text += "  normal                         " + VectorText(p.normal) + ", " +
               FormatNumber(AngleDeg(p.normal, report.start), 3) + " deg from the start\n";
@@ -67,7 +84,7 @@ std::string CalibrationText(const CalibrationReport& report) {
       text += "  roll about it                  " + SigmaText(p.roll_sigma) + "\n";
       text += "  spread of single motions       translation " + DegText(p.translation_spread) +
               ", rotation " + DegText(p.rotation_spread) + "\n";
-      if (!p.message.empty()) text += "  " + p.message + "\n";
+      if (!p.message.empty()) text += Wrapped(p.message);
     }
   }
   if (report.gravity) {
@@ -75,22 +92,21 @@ std::string CalibrationText(const CalibrationReport& report) {
     text += "\nmounting of the gravity's frame, from " + std::to_string(g.pairs) +
             " pairs that turn enough\n";
     if (g.level == CalibrationLevel::kNone) {
-      text += "  not observable: " + g.message + "\n";
+      text += Wrapped("not determined: " + g.message);
     } else {
       text += "  body from it, rotation vector  " + VectorText(LogSO3(g.C)) + " rad, " +
               FormatNumber(TurnDeg(g.C), 3) + " deg\n";
       text += "  tilt                           " + SigmaText(g.tilt_sigma) + "\n";
       text += "  turn about the vertical        " + SigmaText(g.yaw_sigma) + "\n";
       text += "  spread of single pairs         " + DegText(g.spread) + "\n";
-      if (!g.message.empty()) text += "  " + g.message + "\n";
+      if (!g.message.empty()) text += Wrapped(g.message);
     }
   }
   return text;
 }
 
 std::string CalibrationJson(const CalibrationReport& report) {
-  Json json;
-  json["format"] = "rigel-prior-calibration 1";
+  Json json = NewReport("rigel-prior-calibration 1");
   json["options"] = Json::object();
   for (const auto& [name, value] : report.options) json["options"][name] = value;
   json["pairs"] = report.pairs;
@@ -129,7 +145,7 @@ std::string CalibrationJson(const CalibrationReport& report) {
     }
     json["gravity"] = gravity;
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return PrintableJson(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 std::map<std::string, std::string> PlaneLines(const PlaneCalibration& plane, bool normal,

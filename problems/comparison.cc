@@ -8,6 +8,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/core/metrics.h"
+#include "rigel/core/rig_centre.h"
 #include "rigel/problems/cramer_rao.h"
 #include "rigel/problems/parallel.h"
 
@@ -39,12 +40,18 @@ void FillNees(const Pose& truth, const MotionEstimate& estimate, RefineForm form
               PairResult* result) {
   const bool complete = form == RefineForm::kFull || form == RefineForm::kBundle;
   if (!complete || !estimate.refine.covariance || !estimate.refine.translation_observable) return;
-  const MotionBasis basis = FullBasis(estimate.pose, estimate.refine.scale_free);
+  // Of the motion that was fitted: its length is what may have been held.
+  const Eigen::Vector3d& point = estimate.refine.fitted_point;
+  const Pose fitted = MotionOfPoint(estimate.pose, point);
+  const Eigen::Vector3d true_b = MotionOfPoint(truth, point).t;
+  const MotionBasis basis = FullBasis(fitted, estimate.refine.scale_free);
   Eigen::Matrix<double, 6, 1> error;
-  error.head<3>() = LogSO3(truth.R * estimate.pose.R.transpose());
-  const double norm = estimate.refine.scale_free ? truth.t.norm() : estimate.pose.t.norm();
-  error.tail<3>() = norm * truth.t.normalized() - estimate.pose.t;
-  const Eigen::MatrixXd covariance = basis.transpose() * *estimate.refine.covariance * basis;
+  error.head<3>() = LogSO3(truth.R * fitted.R.transpose());
+  const double norm = estimate.refine.scale_free ? true_b.norm() : fitted.t.norm();
+  error.tail<3>() = norm * true_b.normalized() - fitted.t;
+  const Matrix6d from_body = BodyFromPointJacobian(fitted.R, -point);
+  const Eigen::MatrixXd covariance =
+      basis.transpose() * from_body * *estimate.refine.covariance * from_body.transpose() * basis;
   const Eigen::VectorXd free = basis.transpose() * error;
   const double nees = free.dot(covariance.ldlt().solve(free));
   if (!std::isfinite(nees)) return;

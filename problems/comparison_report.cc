@@ -3,7 +3,9 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/csv.h"
+#include "rigel/problems/printable.h"
 #include "rigel/problems/report.h"
+#include "rigel/problems/report_json.h"
 #include "rigel/problems/sequence_tables.h"
 #include "rigel/problems/summary_json.h"
 #include "rigel/problems/table.h"
@@ -118,8 +120,7 @@ std::string ComparisonTable(const std::vector<SolverSummary>& summaries) {
 
 std::string ComparisonJson(const ComparisonReport& report,
                            const std::vector<SolverSummary>& summaries, bool per_pair) {
-  Json json;
-  json["format"] = "rigel-report 1";
+  Json json = NewReport("rigel-report 1", report.version);
   json["pairs"] = report.solvers.front().pairs.size();
   if (report.shard) {
     json["shard"] = {{"index", report.shard->index},
@@ -141,7 +142,7 @@ std::string ComparisonJson(const ComparisonReport& report,
     }
     text += report.solvers.front().pairs.empty() ? "]\n}" : "\n  ]\n}";
   }
-  return text + "\n";
+  return PrintableJson(text + "\n");
 }
 
 std::string ComparisonCsv(const std::vector<SolverResults>& solvers) {

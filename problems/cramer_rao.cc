@@ -6,6 +6,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "rigel/core/pixel_unit.h"
+#include "rigel/core/rig_centre.h"
 #include "rigel/minimal/alignment.h"
 #include "rigel/refine/epipolar_residuals.h"
 #include "rigel/refine/inlier_selection.h"
@@ -31,10 +33,10 @@ Jacobians SampsonJacobians(const GroupedMatches& matches, const Pose& pose) {
 // J'J / sigma^2 as it would be at the exact pixels. At the measured ones noise n adds to it, in the
 // mean, sigma^2 times the square of dJ/dn (2 to 5 percent of the information with forward motion,
 // where flow is short); that is taken away again.
-Matrix6d NoiseFreeInformation(const FramePair& pair, const GroupedMatches& matches,
+Matrix6d NoiseFreeInformation(double noise_px, const GroupedMatches& matches,
                               const std::vector<char>& mask, const Pose& pose) {
-  constexpr double kStep = 1e-2;  // pixels
-  const double variance = *pair.noise_px * *pair.noise_px;
+  const double step_px = 1e-2 * PixelUnit(matches.rig());  // pixels
+  const double variance = noise_px * noise_px;
   const auto square = [&](const Jacobians& J) {
     Matrix6d sum = Matrix6d::Zero();
     for (int k = 0; k < J.cols(); ++k) {
@@ -51,9 +53,9 @@ Matrix6d NoiseFreeInformation(const FramePair& pair, const GroupedMatches& match
         (coordinate < 2 ? m.pixel1 : m.pixel2)(coordinate % 2) += step;
       }
       // In the order of the groups already, so that it stays the same.
-      return SampsonJacobians(GroupedMatches(pair.rig, matches_moved), pose);
+      return SampsonJacobians(GroupedMatches(matches.rig(), matches_moved), pose);
     };
-    excess += square((moved(kStep) - moved(-kStep)) / (2.0 * kStep));
+    excess += square((moved(step_px) - moved(-step_px)) / (2.0 * step_px));
   }
   // To second order; where the noise is so large that this fails, the plain value is nearer.
   const Matrix6d corrected = information - excess;
@@ -69,12 +71,15 @@ std::optional<CramerRaoBound> ComputeCramerRaoBound(const RefineOptions& options
   if (!pair.truth.has_value() || !pair.noise_px.has_value() || !pair.IsValid(&error)) {
     return std::nullopt;
   }
-  const Pose& truth = *pair.truth;
-  const GroupedMatches matches(pair.rig, pair.matches);
+  // Of the motion that the refinement fits, and then of the body's.
+  const Eigen::Vector3d point = FittedPoint(options, pair.prior, pair.rig);
+  const Pose truth = MotionOfPoint(*pair.truth, point);
+  const GroupedMatches matches(WithOrigin(pair.rig, point), pair.matches);
   std::vector<double> errors;
   std::vector<char> mask;
   // An outlier that fits the truth by chance is no information.
-  const double gate = std::max(options.threshold_px, kGateSigmas * *pair.noise_px);
+  const double gate =
+      std::max(ThresholdPx(options.threshold_px, pair.rig), kGateSigmas * *pair.noise_px);
   const bool prior_exact =
       options.form == RefineForm::kPrior || options.form == RefineForm::kPriorDepths;
   Alignment alignment;
@@ -113,11 +118,13 @@ std::optional<CramerRaoBound> ComputeCramerRaoBound(const RefineOptions& options
   };
   SelectPlausibleInliers(matches, truth, gate, fit_at_truth, &errors, &mask);
   CramerRaoBound bound;
-  if (!set_covariance(NoiseFreeInformation(pair, matches, mask, truth), &bound)) {
+  if (!set_covariance(NoiseFreeInformation(*pair.noise_px, matches, mask, truth), &bound)) {
     return std::nullopt;
   }
+  const Matrix6d to_body = BodyFromPointJacobian(truth.R, point);
+  bound.covariance = to_body * bound.covariance * to_body.transpose();
   bound.rotation = RotationSigma(bound.covariance);
-  bound.direction = DirectionSigma(bound.covariance, truth.t);
+  bound.direction = DirectionSigma(bound.covariance, pair.truth->t);
   return bound;
 }
 

@@ -3,12 +3,15 @@
 #include <charconv>
 #include <cmath>
 
+#include "rigel/problems/printable.h"
+
 namespace rigel {
 
 std::string CsvText(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  const std::string cell = Printable(text);
+  if (cell.find_first_of(",\"") == std::string::npos) return cell;
   std::string quoted = "\"";
-  for (const char c : text) {
+  for (const char c : cell) {
     if (c == '"') quoted += '"';
     quoted += c;
   }

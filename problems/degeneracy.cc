@@ -87,6 +87,7 @@ bool MakeProblem(const SolverInfo& solver, Configuration configuration, int inde
   const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
   problem->prior.gravity1 = problem->prior.gravity2 = y;
   problem->prior.axis = problem->prior.normal = y;
+  problem->prior.forward = Eigen::Vector3d::UnitZ();
 
   const int num_cameras = problem->rig.size();
   bool inter = false;

@@ -1,4 +1,5 @@
 // Tables, JSON and CSV of rigel_estimate.
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -7,7 +8,9 @@
 #include "rigel/core/angles.h"
 #include "rigel/problems/csv.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/problems/printable.h"
 #include "rigel/problems/report.h"
+#include "rigel/problems/report_json.h"
 #include "rigel/problems/table.h"
 
 namespace rigel {
@@ -19,11 +22,7 @@ using Json = nlohmann::ordered_json;
 std::string ShortName(const std::string& name) {
   const size_t slash = name.find_last_of('/');
   std::string text = slash == std::string::npos ? name : name.substr(slash + 1);
-  const std::string ending = ".matches";
-  if (text.size() > ending.size() &&
-      text.compare(text.size() - ending.size(), ending.size(), ending) == 0) {
-    text.resize(text.size() - ending.size());
-  }
+  if (IsMatchFileName(text)) text.resize(text.rfind(".matches"));
   constexpr size_t kWidth = 16;
   return Shortened(PrintablePath(text), kWidth);
 }
@@ -127,10 +126,38 @@ std::string EstimateTable(const EstimateReport& report) {
   return text;
 }
 
+std::vector<std::string> RigDoubtLines(const EstimateReport& report) {
+  struct Line {
+    RigDoubt first;
+    std::string pair;
+    int others = 0;
+  };
+  std::vector<Line> lines;
+  for (size_t k = 0; k < report.pairs.size(); ++k) {
+    for (const RigDoubt& doubt : report.estimates[k].rig_doubts) {
+      const auto same = std::find_if(lines.begin(), lines.end(), [&](const Line& line) {
+        return line.first.kind == doubt.kind && line.first.camera1 == doubt.camera1 &&
+               line.first.camera2 == doubt.camera2;
+      });
+      if (same != lines.end()) {
+        ++same->others;
+      } else {
+        lines.push_back({doubt, report.pairs[k].name, 0});
+      }
+    }
+  }
+  std::vector<std::string> texts;
+  for (const Line& line : lines) {
+    texts.push_back(PrintablePath(line.pair) + ": " + line.first.message +
+                    (line.others == 0 ? std::string()
+                                      : " (and so in " + std::to_string(line.others) + " more)"));
+  }
+  return texts;
+}
+
 std::string EstimateJson(const EstimateReport& report, bool times) {
   const std::vector<FramePair>& pairs = report.pairs;
-  Json json;
-  json["format"] = "rigel-estimate 1";
+  Json json = NewReport("rigel-estimate 1");
   json["options"] = Json::object();
   for (const auto& [name, value] : report.options) json["options"][name] = value;
   // Pair by pair: a tree of many would be large.
@@ -163,6 +190,15 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
         entry["rotation_observable"] = r.rotation_observable;
         entry["translation_observable"] = r.translation_observable;
         entry["scale_observable"] = r.scale_observable;
+        entry["camera_pairs"] = Json::array();
+        for (const CameraPairFit& fit : r.camera_pairs) {
+          entry["camera_pairs"].push_back({{"cameras", {fit.camera1, fit.camera2}},
+                                           {"rows", fit.rows},
+                                           {"inliers", fit.inliers}});
+        }
+        for (const RigDoubt& doubt : e.rig_doubts) {
+          entry["rig_doubts"].push_back(doubt.message);
+        }
         if (r.covariance) {
           PutFinite("rotation_sd_deg", RadToDeg(r.rotation_sigma), &entry);
           if (r.translation_observable) {
@@ -188,7 +224,7 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
   }
   text += pairs.empty() ? "]" : "\n  ]";
   if (report.trajectories) text += ",\n  \"trajectories\": " + TrajectoriesJson(report);
-  return text + "\n}\n";
+  return PrintableJson(text + "\n}\n");
 }
 
 std::string EstimateCsv(const EstimateReport& report, bool times) {

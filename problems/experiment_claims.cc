@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rigel/problems/claim_cases.h"
+#include "rigel/problems/report_json.h"
 
 namespace rigel {
 
@@ -44,8 +45,7 @@ std::string ClaimsMarkdown(const std::string& about, const std::vector<Claim>& c
 }
 
 std::string ClaimsJson(const std::vector<Claim>& claims) {
-  nlohmann::ordered_json json;
-  json["format"] = "rigel-claims 1";
+  nlohmann::ordered_json json = NewReport("rigel-claims 1");
   json["claims"] = nlohmann::ordered_json::array();
   for (const Claim& claim : claims) {
     json["claims"].push_back({{"of", claim.source},

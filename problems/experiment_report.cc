@@ -12,6 +12,7 @@
 #include "rigel/problems/csv.h"
 #include "rigel/problems/json_message.h"
 #include "rigel/problems/json_text.h"
+#include "rigel/problems/report_json.h"
 #include "rigel/problems/summary_json.h"
 #include "rigel/problems/table.h"
 
@@ -203,8 +204,7 @@ std::string ExperimentTable(const ExperimentPlan& plan, const std::vector<Experi
 
 std::string ExperimentJson(const ExperimentPlan& plan, const std::vector<ExperimentRow>& rows) {
   const ExperimentSpec& spec = *plan.spec;
-  Json json;
-  json["format"] = "rigel-experiment 1";
+  Json json = NewReport("rigel-experiment 1");
   json["experiment"] = spec.name;
   json["about"] = spec.about;
   if (spec.variable != ExperimentVariable::kNone) {

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "rigel/problems/experiment_report.h"
+#include "rigel/problems/json_text.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/whole_file.h"
 
@@ -40,6 +41,12 @@ bool ExperimentStore::Open(const std::string& path, const ExperimentPlan& plan, 
     *error = PrintablePath(path) + ": cannot be read: " + code.message();
     return false;
   }
+  if (resume && there &&
+      (!std::filesystem::is_regular_file(path, code) ||
+       std::filesystem::file_size(path, code) > kMaxJsonBytes)) {
+    *error = PrintablePath(path) + ": expected a file of at most 1 GiB";
+    return false;
+  }
   if (!resume || !there) return WriteWholeFile(path, PlanLine(plan, run_), error);
   std::ifstream file(path, std::ios::binary);
   std::ostringstream stream;
@@ -67,7 +74,7 @@ bool ExperimentStore::Read(const ExperimentPlan& plan, const std::string& text,
   } else if (line + "\n" != wanted) {
     *error = PrintablePath(path_) +
              ":1: of another run; resume it with its own flags or name another directory\n" +
-             "  there: " + line.substr(0, 400) +
+             "  there: " + PrintablePath(line.substr(0, 400)) +
              "\n  here:  " + wanted.substr(0, wanted.size() - 1);
     return false;
   }

@@ -24,8 +24,8 @@ inline constexpr double kLengthWithoutScale = 1.0;  // metres
 // `estimates` go together; `positions` has the place of each pair in the drive, increasing, or is
 // empty where they follow each other. Each trajectory starts with a vertex at the identity; the
 // next starts
-//   - after a pair without an edge: no refined motion, or its rotation or the direction of its
-//     translation is not observable;
+//   - after a pair without an edge: no refined motion, or its rotation is not observable, or the
+//     direction of its translation is not and it does not stand still (StandsStill());
 //   - at a pair whose position does not follow that of the pair before, whose sequence is another,
 //     or that starts at another time than the pair before ended, if both state their times.
 // Each of these is told in one line of printable text in *notes and as a comment. A pose that no
@@ -33,7 +33,11 @@ inline constexpr double kLengthWithoutScale = 1.0;  // metres
 //
 // Where the scale is not observable an edge has no information along t, yet needs a length: |t| of
 // the estimate if its relative standard deviation is at most kRoughScaleRatio, else the distance of
-// the pair's prior, else kLengthWithoutScale. A last note counts the edges with the latter two.
+// the pair's prior, else kLengthWithoutScale. A note counts the edges with the latter two.
+//
+// Where the rig stands still the edge has the rotation of the estimate, its centre at rest and the
+// covariance of the estimate; where |t| is not determined at all, kStillMetres for the translation.
+// A last note counts these edges.
 std::string FormatG2o(const std::vector<FramePair>& pairs,
                       const std::vector<MotionEstimate>& estimates,
                       const std::vector<int>& positions, std::vector<std::string>* notes);

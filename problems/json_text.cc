@@ -1,5 +1,7 @@
 #include "rigel/problems/json_text.h"
 
+#include <cstdint>
+#include <limits>
 #include <stdexcept>
 
 namespace rigel {
@@ -51,6 +53,16 @@ std::string QuoteJson(const nlohmann::ordered_json& value) {
   std::string text = value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   if (text.size() > kMaxLength) text = text.substr(0, kMaxLength) + "...";
   return "'" + text + "'";
+}
+
+int JsonInteger(const nlohmann::ordered_json& value, int min) {
+  const bool is_integer = value.is_number_integer();
+  const int64_t number = is_integer ? value.get<int64_t>() : 0;
+  if (!is_integer || number < min || number > std::numeric_limits<int>::max()) {
+    throw std::runtime_error(QuoteJson(value) + ", expected an integer from " +
+                             std::to_string(min));
+  }
+  return static_cast<int>(number);
 }
 
 }  // namespace rigel

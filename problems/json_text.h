@@ -20,6 +20,10 @@ nlohmann::ordered_json ParseJson(std::string_view text);
 // A value for a message: short, of an array or object only what it is.
 std::string QuoteJson(const nlohmann::ordered_json& value);
 
+// The value as an integer. Throws std::exception with a message for people if it is none, below
+// `min` or larger than an int.
+int JsonInteger(const nlohmann::ordered_json& value, int min);
+
 }  // namespace rigel
 
 #endif  // RIGEL_PROBLEMS_JSON_TEXT_H_

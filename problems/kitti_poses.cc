@@ -1,15 +1,13 @@
 #include "rigel/problems/kitti_poses.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <charconv>
-#include <cmath>
+#include <array>
 #include <filesystem>
-#include <fstream>
 #include <string_view>
 #include <system_error>
 
 #include "rigel/problems/match_file.h"
+#include "rigel/problems/text_lines.h"
 
 namespace rigel {
 namespace {
@@ -18,26 +16,16 @@ constexpr double kMaxRotationError = 1e-3;  // of any element of R'R - I
 
 // False with what is wrong.
 bool ParsePose(std::string_view line, Pose* pose, std::string* error) {
-  constexpr int kNumbers = 12;
-  constexpr std::string_view kBlanks = " \t\r";
-  double m[kNumbers];
-  int count = 0;
-  for (size_t begin = line.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
-    const size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
-    if (count < kNumbers) {
-      // from_chars takes no plus sign.
-      const char* first = line.data() + begin + (line[begin] == '+' ? 1 : 0);
-      const auto [stop, status] = std::from_chars(first, line.data() + end, m[count]);
-      if (status != std::errc() || stop != line.data() + end || !std::isfinite(m[count])) {
-        *error = "number " + std::to_string(count + 1) + " is not a finite number";
-        return false;
-      }
+  std::array<double, 12> m;
+  const std::vector<std::string_view> words = SplitAtBlanks(line);
+  for (size_t k = 0; k < std::min(words.size(), m.size()); ++k) {
+    if (!ParseFinite(words[k], &m[k])) {
+      *error = "number " + std::to_string(k + 1) + " is not a finite number";
+      return false;
     }
-    ++count;
-    begin = line.find_first_not_of(kBlanks, end);
   }
-  if (count != kNumbers) {
-    *error = std::to_string(count) + " numbers, expected 12: the rows of a 3x4 matrix";
+  if (words.size() != m.size()) {
+    *error = std::to_string(words.size()) + " numbers, expected 12: the rows of a 3x4 matrix";
     return false;
   }
   Eigen::Matrix3d R;
@@ -79,27 +67,17 @@ bool ListPoseFiles(const std::string& directory, std::vector<std::filesystem::pa
 
 bool ReadKittiPoses(const std::string& path, std::vector<Pose>* world_from_camera,
                     std::string* error) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    *error = PrintablePath(path) + ": cannot be opened: " + std::generic_category().message(errno);
-    return false;
-  }
+  std::vector<TextLine> lines;
+  if (!ReadFrameLines(path, &lines, error)) return false;
   std::vector<Pose> poses;
-  int number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++number;
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+  for (const TextLine& line : lines) {
     Pose pose;
     std::string what;
-    if (!ParsePose(line, &pose, &what)) {
-      *error = PrintablePath(path) + ":" + std::to_string(number) + ": " + what;
+    if (!ParsePose(line.text, &pose, &what)) {
+      *error = Where(path, line) + ": " + what;
       return false;
     }
     poses.push_back(pose);
-  }
-  if (file.bad()) {
-    *error = PrintablePath(path) + ": cannot be read";
-    return false;
   }
   if (poses.empty()) {
     *error = PrintablePath(path) + ": there is no pose in it";

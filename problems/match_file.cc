@@ -4,22 +4,20 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
-#include <filesystem>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <system_error>
 #include <utility>
 
 #include "rigel/core/angles.h"
+#include "rigel/problems/input_file.h"
 #include "rigel/problems/match_file_words.h"
+#include "rigel/problems/printable.h"
 
 namespace rigel {
 namespace {
@@ -44,57 +42,25 @@ int FindKeyword(std::string_view word) {
 // Carriage returns count as blanks, which accepts CRLF line ends.
 bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-std::string SystemMessage(int error_number) {
-  return std::generic_category().message(error_number);
-}
-
 bool ParseInteger(std::string_view word, int min, int* value) {
   const char* const end = word.data() + word.size();
   const auto [stop, status] = std::from_chars(word.data(), end, *value);
   return status == std::errc() && stop == end && *value >= min;
 }
 
-// Well-formed UTF-8 (RFC 3629: no overlong forms, no surrogates, at most U+10FFFF).
-bool IsUtf8(std::string_view text) {
-  for (size_t k = 0; k < text.size();) {
-    const auto byte = [&](size_t n) {
-      return k + n < text.size() ? static_cast<unsigned char>(text[k + n]) : 0u;
-    };
-    const unsigned lead = byte(0);
-    size_t tail = 0;
-    unsigned low = 0x80, high = 0xbf;  // range of the second byte
-    if (lead >= 0xc2 && lead <= 0xdf) {
-      tail = 1;
-    } else if (lead >= 0xe0 && lead <= 0xef) {
-      tail = 2;
-      if (lead == 0xe0) low = 0xa0;
-      if (lead == 0xed) high = 0x9f;
-    } else if (lead >= 0xf0 && lead <= 0xf4) {
-      tail = 3;
-      if (lead == 0xf0) low = 0x90;
-      if (lead == 0xf4) high = 0x8f;
-    } else if (lead >= 0x80) {
-      return false;
-    }
-    if (tail > 0 && (byte(1) < low || byte(1) > high)) return false;
-    for (size_t n = 2; n <= tail; ++n) {
-      if ((byte(n) & 0xc0) != 0x80) return false;
-    }
-    k += tail + 1;
-  }
-  return true;
-}
-
 class Parser {
  public:
   Parser(std::string_view text, const std::string& name, std::string* error)
-      : pos_(text.data()), end_(text.data() + text.size()), name_(name), error_(error) {
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    if (text.substr(0, 3) == kByteOrderMark) pos_ += 3;
-  }
+      : text_(text), name_(name), error_(error) {}
 
   bool Parse(FramePair* pair) {
-    if (!RejectNul()) return false;
+    std::string what;
+    if (!CheckText(&text_, &line_, &what)) {
+      return Fail(what + ", expected a match file (UTF-8 text)");
+    }
+    line_ = 0;
+    pos_ = text_.data();
+    end_ = pos_ + text_.size();
     pair_.name = name_;
     if (!ParseHeader() || !FinishRig() || !ParseRows()) return false;
     *pair = std::move(pair_);
@@ -111,15 +77,6 @@ class Parser {
     *error_ =
         PrintablePath(name_) + (line_ > 0 ? ":" + std::to_string(line_) : "") + ": " + message;
     return false;
-  }
-
-  // NUL never occurs in text: UTF-16 and most binary files are told here, in plain words, even
-  // where the byte would hide in a comment.
-  bool RejectNul() {
-    const void* const nul = pos_ == end_ ? nullptr : std::memchr(pos_, 0, end_ - pos_);
-    if (nul == nullptr) return true;
-    line_ = 1 + std::count(pos_, static_cast<const char*>(nul), '\n');
-    return Fail("a NUL byte, expected a match file (UTF-8 text)");
   }
 
   // Splits the next line that has content into columns_. False at the end of the text; line_ is
@@ -156,7 +113,7 @@ class Parser {
   }
 
   bool FailColumn(size_t column, const std::string& expected) {
-    return Fail(ColumnName(column) + " is " + Quote(columns_[column]) + ", expected " + expected);
+    return Fail(ColumnName(column) + " is " + Quoted(columns_[column]) + ", expected " + expected);
   }
 
   bool CheckColumns(size_t expected) {
@@ -238,7 +195,7 @@ class Parser {
 
   bool Format() {
     if (columns_[1] == "rigmatch" && columns_[2] == "1") return true;
-    return Fail("format " + Quote(columns_[1]) + " version " + Quote(columns_[2]) +
+    return Fail("format " + Quoted(columns_[1]) + " version " + Quoted(columns_[2]) +
                 ", expected 'format rigmatch 1', the version that is read here");
   }
 
@@ -246,7 +203,7 @@ class Parser {
     int index;
     if (!Integer(1, 0, &index)) return false;
     if (columns_[2] != "pinhole") {
-      return Fail("camera model " + Quote(columns_[2]) + ", expected 'pinhole'");
+      return Fail("camera model " + Quoted(columns_[2]) + ", expected 'pinhole'");
     }
     DeclaredCamera declared;
     declared.line = line_;
@@ -325,6 +282,8 @@ class Parser {
         return Direction(&prior.normal);
       case kNormalSigma:
         return SigmaDeg(&prior.normal_sigma);
+      case kForward:
+        return Direction(&prior.forward);
       case kDistance:
         return Distance();
       case kNoise:
@@ -345,14 +304,14 @@ class Parser {
       const int id = FindKeyword(columns_[0]);
       if (id < 0) {
         if (seen[kFormat] == 0) {
-          return Fail(Quote(columns_[0]) + ", expected a match file with a line '" +
+          return Fail(Quoted(columns_[0]) + ", expected a match file with a line '" +
                       std::string(kKeywords[kFormat].usage) + "'");
         }
         std::string names;
         for (const Keyword& keyword : kKeywords) {
           names += (names.empty() ? "" : ", ") + std::string(keyword.name);
         }
-        return Fail("unknown keyword " + Quote(columns_[0]) + ", expected one of " + names);
+        return Fail("unknown keyword " + Quoted(columns_[0]) + ", expected one of " + names);
       }
       const Keyword& keyword = kKeywords[id];
       if (seen[id] > 0 && id != kCamera) {
@@ -438,7 +397,7 @@ class Parser {
       while (matches.size() < num_rows && TakePlainRow(&m)) matches.push_back(m);
       if (!NextLine()) break;
       if (FindKeyword(columns_[0]) >= 0) {
-        return Fail(Quote(columns_[0]) + " after 'matches', expected header lines before it");
+        return Fail(Quoted(columns_[0]) + " after 'matches', expected header lines before it");
       }
       if (matches.size() == num_rows) {
         return Fail("more rows than 'matches " + std::to_string(num_rows) +
@@ -455,8 +414,9 @@ class Parser {
                 std::to_string(num_rows));
   }
 
-  const char* pos_;
-  const char* const end_;
+  std::string_view text_;
+  const char* pos_ = nullptr;
+  const char* end_ = nullptr;
   const std::string& name_;
   std::string* const error_;
 
@@ -470,47 +430,6 @@ class Parser {
   int num_matches_ = 0;
 };
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, CloseFile>;
-
-// A buffer that is not cleared before it is filled.
-struct Buffer {
-  explicit Buffer(size_t num_bytes) : data(new char[num_bytes]), capacity(num_bytes) {}
-
-  std::unique_ptr<char[]> data;
-  size_t capacity;
-  size_t size = 0;
-};
-
-bool ReadWholeFile(const std::string& path, Buffer* text, std::string* error) {
-  const File file(std::fopen(path.c_str(), "rb"));
-  if (file == nullptr) {
-    *error = PrintablePath(path) + ": cannot be opened: " + SystemMessage(errno);
-    return false;
-  }
-  // The size is a hint that saves copies: pipes have none, and files may grow meanwhile.
-  std::error_code no_size;
-  const uintmax_t size = std::filesystem::file_size(path, no_size);
-  *text = Buffer(no_size ? size_t{1} << 16 : static_cast<size_t>(size) + 1);
-  for (;;) {
-    const size_t wanted = text->capacity - text->size;
-    const size_t count = std::fread(text->data.get() + text->size, 1, wanted, file.get());
-    text->size += count;
-    if (count < wanted) break;
-    Buffer larger(2 * text->capacity);
-    std::memcpy(larger.data.get(), text->data.get(), text->size);
-    larger.size = text->size;
-    *text = std::move(larger);
-  }
-  if (std::ferror(file.get())) {
-    *error = PrintablePath(path) + ": cannot be read: " + SystemMessage(errno);
-    return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 bool ParseMatches(std::string_view text, const std::string& name, FramePair* pair,
@@ -519,9 +438,9 @@ bool ParseMatches(std::string_view text, const std::string& name, FramePair* pai
 }
 
 bool ReadMatchFile(const std::string& path, FramePair* pair, std::string* error) {
-  Buffer text(0);
-  return ReadWholeFile(path, &text, error) &&
-         ParseMatches({text.data.get(), text.size}, path, pair, error);
+  InputBytes bytes;
+  return ReadInputFile(path, &bytes, error) &&
+         ParseMatches(bytes.text(), InputName(path), pair, error);
 }
 
 }  // namespace rigel

@@ -11,6 +11,7 @@
 //   axis_sigma_deg S
 //   normal NX NY NZ
 //   normal_sigma_deg S
+//   forward FX FY FZ
 //   distance D SIGMA
 //   noise_px S
 //   sequence NAME
@@ -37,8 +38,9 @@
 
 namespace rigel {
 
-// Reads the match file `path`; pair->name becomes `path`. False with a message if the file
-// cannot be read or breaks the format in any way; *pair is then unchanged. What is returned
+// Reads the match file `path`, which may be compressed by gzip, or stdin if it is "-"; pair->name
+// becomes `path`, of stdin "stdin". False with a message if the file cannot be read, is larger than
+// 2 GiB or breaks the format in any way; *pair is then unchanged. What is returned
 // passes FramePair::IsValid, its directions are of unit length and its sigmas are positive.
 // Directions and quaternions that are off unit length by up to 1e-3 are normalized.
 bool ReadMatchFile(const std::string& path, FramePair* pair, std::string* error);
@@ -53,22 +55,33 @@ bool ParseMatches(std::string_view text, const std::string& name, FramePair* pai
 // a file is exact). Does not check `pair`.
 std::string FormatMatches(const FramePair& pair);
 
-// Writes `pair` to `path`: to a temporary file beside it, which then takes its place, so that
-// `path` is never half a file. False with a message if that fails, or if a reader would not get
-// the same pair back (a number that is not finite, an image size of 0, one time without the
-// other, a sequence name with a blank, ...); nothing is then written. pair.name is not stored.
+// Writes `pair` to `path`, compressed if its name ends in ".gz": to a temporary file beside it,
+// which then takes its place, so that `path` is never half a file. False with a message if that
+// fails, or if a reader would not get the same pair back (a number that is not finite, an image
+// size of 0, one time without the other, a sequence name with a blank, ...); nothing is then
+// written. pair.name is not stored.
 bool WriteMatchFile(const std::string& path, const FramePair& pair, std::string* error);
 
-// A path (or a message that holds one) as one line: control characters in hexadecimal.
+// The text as a file of that name has it: compressed by gzip if the name ends in ".gz".
+std::string MatchFileBytes(const std::string& path, const std::string& text);
+
+// A path (or a message that holds one) as one line that is safe to show: control characters, marks
+// that turn the direction of writing and bytes that are not UTF-8 in hexadecimal.
 std::string PrintablePath(const std::string& path);
 
+// Whether a directory's file of that name is a match file: "NAME.matches" or "NAME.matches.gz".
+bool IsMatchFileName(const std::string& name);
+
 // Expands a comma-separated list of files and directories, in the order given. A directory means
-// the files in it, not below it, whose names end in ".matches", in byte order. A file is taken
-// whatever its name. Empty items are skipped; what is named twice is listed twice. One message
-// is appended to *errors for each item that is not there, cannot be listed, or is a directory
-// without match files; the other items are still returned.
+// the match files in it, not below it, in the order of the numbers in their names where all have
+// some, else in byte order; where the two differ, a line of *notes (may be null) says so. A file is
+// taken whatever its name; "-" is stdin, once. Empty items are skipped; what is named twice is
+// listed twice. One message is appended to *errors for each item that is not there, cannot be
+// listed, or is a directory without match files, and for each compressed file that lies beside its
+// like; the other items are still returned.
 std::vector<std::string> ListMatchFiles(const std::string& comma_separated,
-                                        std::vector<std::string>* errors);
+                                        std::vector<std::string>* errors,
+                                        std::vector<std::string>* notes = nullptr);
 
 }  // namespace rigel
 

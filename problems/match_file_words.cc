@@ -8,31 +8,6 @@ namespace rigel::match_file {
 
 bool IsControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
-void AppendHex(char c, std::string* out) {
-  constexpr char kDigits[] = "0123456789abcdef";
-  const auto byte = static_cast<unsigned char>(c);
-  *out += "\\x";
-  *out += kDigits[byte >> 4];
-  *out += kDigits[byte & 15];
-}
-
-std::string Quote(std::string_view word) {
-  constexpr size_t kMaxLength = 30;
-  std::string out = "'";
-  for (const char c : word) {
-    if (out.size() > kMaxLength) {
-      out += "...";
-      break;
-    }
-    if (IsControl(c) || (c & 0x80)) {
-      AppendHex(c, &out);
-    } else {
-      out += c;
-    }
-  }
-  return out + "'";
-}
-
 bool ParseNumber(std::string_view word, double* value) {
   const char* begin = word.data();
   const char* const end = begin + word.size();

@@ -21,6 +21,7 @@ enum KeywordId {
   kAxisSigma,
   kNormal,
   kNormalSigma,
+  kForward,
   kDistance,
   kNoise,
   kSequence,
@@ -47,6 +48,7 @@ inline constexpr std::array<Keyword, kNumKeywords> kKeywords = {{
     {"axis_sigma_deg", "axis_sigma_deg S", 2},
     {"normal", "normal NX NY NZ", 4},
     {"normal_sigma_deg", "normal_sigma_deg S", 2},
+    {"forward", "forward FX FY FZ", 4},
     {"distance", "distance D SIGMA", 3},
     {"noise_px", "noise_px S", 2},
     {"sequence", "sequence NAME", 2},
@@ -54,12 +56,6 @@ inline constexpr std::array<Keyword, kNumKeywords> kKeywords = {{
 }};
 
 bool IsControl(char c);
-
-// As two hexadecimal digits, "\x1b".
-void AppendHex(char c, std::string* out);
-
-// A word of the file for a message: quoted, short, and printable even if the file is rubbish.
-std::string Quote(std::string_view word);
 
 // False if the word is not a finite number.
 bool ParseNumber(std::string_view word, double* value);

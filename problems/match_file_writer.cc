@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "rigel/core/angles.h"
+#include "rigel/problems/gzip.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/match_file_words.h"
+#include "rigel/problems/printable.h"
 #include "rigel/problems/whole_file.h"
 
 namespace rigel {
@@ -118,6 +120,7 @@ std::string FormatMatches(const FramePair& pair) {
   sigma(kAxisSigma, prior.axis_sigma);
   direction(kNormal, prior.normal);
   sigma(kNormalSigma, prior.normal_sigma);
+  direction(kForward, prior.forward);
   if (prior.distance) {
     f.Word(kKeywords[kDistance].name).Number(*prior.distance).Number(prior.distance_sigma);
     f.EndLine();
@@ -132,6 +135,14 @@ std::string FormatMatches(const FramePair& pair) {
   return f.Take();
 }
 
+std::string MatchFileBytes(const std::string& path, const std::string& text) {
+  constexpr std::string_view kCompressed = ".gz";
+  const bool compressed =
+      path.size() > kCompressed.size() &&
+      path.compare(path.size() - kCompressed.size(), kCompressed.size(), kCompressed) == 0;
+  return compressed ? Gzip(text) : text;
+}
+
 bool WriteMatchFile(const std::string& path, const FramePair& pair, std::string* error) {
   const std::string text = FormatMatches(pair);
   // Reading it back costs little and finds everything a reader would reject.
@@ -143,11 +154,11 @@ bool WriteMatchFile(const std::string& path, const FramePair& pair, std::string*
     return false;
   }
   if (read.sequence != pair.sequence) {
-    *error = PrintablePath(refusal) + ": sequence " + Quote(pair.sequence) +
+    *error = PrintablePath(refusal) + ": sequence " + Quoted(pair.sequence) +
              ", expected a name without blanks";
     return false;
   }
-  return WriteWholeFile(path, text, error);
+  return WriteWholeFile(path, MatchFileBytes(path, text), error);
 }
 
 }  // namespace rigel

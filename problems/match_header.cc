@@ -1,11 +1,9 @@
 #include "rigel/problems/match_header.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <fstream>
-#include <sstream>
-#include <system_error>
+#include <string_view>
 
+#include "rigel/problems/input_file.h"
 #include "rigel/problems/match_file.h"
 
 namespace rigel {
@@ -29,8 +27,9 @@ bool IsComment(const std::string& line, const std::string& words) {
 
 std::string ReplaceHeaderLines(const std::string& text,
                                const std::map<std::string, std::string>& lines) {
-  std::string result;
-  size_t begin = 0;
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  size_t begin = text.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0 ? 3 : 0;
+  std::string result = text.substr(0, begin);
   while (begin < text.size()) {
     const size_t end = std::min(text.find('\n', begin), text.size());
     const std::string line = text.substr(begin, end - begin);
@@ -52,24 +51,29 @@ std::string ReplaceHeaderLines(const std::string& text,
 
 bool ReadWithHeaderLines(const std::string& path, const std::map<std::string, std::string>& lines,
                          std::string* text, std::string* error) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream stream;
-  if (file) stream << file.rdbuf();
-  if (!file) {
-    *error = PrintablePath(path) + ": cannot be read: " + std::generic_category().message(errno);
+  InputBytes bytes;
+  FramePair pair;
+  if (!ReadInputFile(path, &bytes, error) || !ParseMatches(bytes.text(), path, &pair, error)) {
     return false;
   }
-  FramePair pair;
-  if (!ParseMatches(stream.str(), path, &pair, error)) return false;
-  *text = ReplaceHeaderLines(stream.str(), lines);
+  *text = ReplaceHeaderLines(std::string(bytes.text()), lines);
   return ParseMatches(*text, path + ": not written, it could not be read back", &pair, error);
 }
 
 std::string FindHeaderComment(const std::string& path, const std::string& words) {
-  std::ifstream file(path, std::ios::binary);
-  for (std::string line; std::getline(file, line) && FirstWord(line) != "matches";) {
+  InputBytes bytes;
+  std::string ignored;
+  if (!ReadInputFile(path, &bytes, &ignored)) return "";
+  std::string_view text = bytes.text();
+  int64_t line_number;
+  if (!CheckText(&text, &line_number, &ignored)) return "";
+  while (!text.empty()) {
+    const size_t end = std::min(text.find('\n'), text.size());
+    std::string line(text.substr(0, end));
+    if (FirstWord(line) == "matches") break;
     while (!line.empty() && line.back() == '\r') line.pop_back();
     if (IsComment(line, words)) return line;
+    text.remove_prefix(std::min(end + 1, text.size()));
   }
   return "";
 }

@@ -105,7 +105,8 @@ bool EstimateWithOpenGv(const std::string& peer, const RansacOptions& options,
       adapter, sixpt ? Problem::SIXPT : Problem::SEVENTEENPT, /*asCentral=*/false,
       /*randomSeed=*/false);
   // Its error is the sum over both views of 1 - cos of the angle.
-  ransac.threshold_ = 1.0 - std::cos(options.threshold_px / pair.rig.cameras[0].intrinsics.fx);
+  ransac.threshold_ = 1.0 - std::cos(ThresholdPx(options.threshold_px, pair.rig) /
+                                     pair.rig.cameras[0].intrinsics.fx);
   ransac.max_iterations_ = options.max_iterations;
   ransac.probability_ = options.confidence;
   if (!ransac.computeModel()) return false;

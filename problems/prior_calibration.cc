@@ -7,7 +7,9 @@
 #include <Eigen/LU>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/body_axes.h"
 #include "rigel/core/median.h"
+#include "rigel/problems/table.h"
 
 namespace rigel {
 namespace {
@@ -42,6 +44,24 @@ double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+// "12.3 degrees".
+std::string DegreesText(double radians) { return FormatNumber(RadToDeg(radians), 1) + " degrees"; }
+
+std::string TooFar() {
+  return ", farther than the " + FormatNumber(kMaxCalibrationTurnDeg, 0) + " that are believed";
+}
+
+// "0.2 and 3.4 degrees, at most 1.0 is asked"; what is not determined at all is left out.
+std::string SigmasText(double sigma1, double sigma2) {
+  std::string text;
+  for (const double sigma : {sigma1, sigma2}) {
+    if (!std::isfinite(sigma) || sigma < 0) continue;
+    text += (text.empty() ? "" : " and ") + FormatNumber(RadToDeg(sigma), 2);
+  }
+  return (text.empty() ? "unknown" : text + " degrees") + ", at most " +
+         FormatNumber(kMaxCalibrationSigmaDeg, 1) + " is asked";
+}
+
 class PlaneFit {
  public:
   PlaneFit(const std::vector<CalibrationMotion>& motions, const Eigen::Vector3d& start)
@@ -65,19 +85,50 @@ class PlaneFit {
       return result;
     }
     result.driving = Driving();
-    if (FitNormal(&result)) return result;
-    if (FitTilt(&result)) {
-      result.message =
-          "too little turning to tell the roll of the plane, which is that of the start";
+    if (FitNormal(result)) {
+      const double turn = AngleBetween(fit_.normal, start_);
+      if (turn > DegToRad(kMaxCalibrationTurnDeg)) {
+        result.message = "the motions lie in a plane, but across " + DirectionText(fit_.normal) +
+                         ", " + DegreesText(turn) + " from the start " + DirectionText(start_) +
+                         TooFar() + "; is another way down (--down)?";
+        return result;
+      }
+      Take(CalibrationLevel::kFull, fit_, &result);
       return result;
     }
-    result.message = "the motions lie in no plane within " +
-                     std::to_string(static_cast<int>(kMaxCalibrationTurnDeg)) +
-                     " degrees of the start, or scatter too much";
+    const Fit full = fit_;
+    const double out_of_plane = std::asin(std::min(1.0, std::abs(result.driving.dot(start_))));
+    if (out_of_plane > DegToRad(kMaxCalibrationTurnDeg)) {
+      result.message = "most translations go along " + DirectionText(result.driving) + ", " +
+                       DegreesText(out_of_plane) + " out of the plane across the start " +
+                       DirectionText(start_) + TooFar() + "; is another way down (--down)?";
+    } else if (FitTilt(result)) {
+      Take(CalibrationLevel::kTilt, fit_, &result);
+      result.message =
+          "too little turning to tell the roll of the plane, which is that of the start";
+    } else {
+      result.message =
+          "the motions scatter too much about any plane: sd of its normal " +
+          SigmasText(fit_.tilt_sigma > 0 ? fit_.tilt_sigma : full.tilt_sigma, full.roll_sigma);
+    }
     return result;
   }
 
  private:
+  struct Fit {
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    double tilt_sigma = -1.0, roll_sigma = -1.0;
+  };
+
+  void Take(CalibrationLevel level, const Fit& fit, PlaneCalibration* result) const {
+    result->level = level;
+    result->normal = fit.normal;
+    result->tilt_sigma = fit.tilt_sigma;
+    result->roll_sigma = fit.roll_sigma;
+    result->translation_spread = translation_spread_;
+    result->rotation_spread = rotation_spread_;
+  }
+
   Eigen::Vector3d Driving() const {
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     for (const Eigen::Vector3d& d : directions_) sum += d * d.transpose();
@@ -106,8 +157,9 @@ class PlaneFit {
   }
 
   // Both: sum of (d . n)^2 / st^2 + (|w|^2 - (w . n)^2) / sr^2, whose least n is an eigenvector;
-  // the gaps of the eigenvalues are its curvature, in which noise of the rotations cancels.
-  bool FitNormal(PlaneCalibration* result) {
+  // the gaps of the eigenvalues are its curvature, in which noise of the rotations cancels. False
+  // if that does not determine it.
+  bool FitNormal(const PlaneCalibration& result) {
     Eigen::Vector3d n = start_;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
     for (int k = 0; k < kMaxIterations; ++k) {
@@ -126,7 +178,8 @@ class PlaneFit {
       n = next;
       if (moved < kConverged) break;
     }
-    if (AngleBetween(n, start_) > DegToRad(kMaxCalibrationTurnDeg)) return false;
+    fit_ = Fit();
+    fit_.normal = n;
     // One gradient a pair would need the pairs in step; those of both kinds are taken as
     // independent.
     Eigen::Matrix3d gradients = Eigen::Matrix3d::Zero();
@@ -145,28 +198,19 @@ class PlaneFit {
     const Eigen::Matrix<double, 3, 2> others = eigen.eigenvectors().rightCols<2>();
     const Eigen::Vector2d inverse(1.0 / gap1, 1.0 / gap2);
     const Eigen::Matrix2d covariance =
-        SmallSampleFactor(result->translations, 2) *
+        SmallSampleFactor(result.translations, 2) *
         (inverse.asDiagonal() * others.transpose() * gradients * others * inverse.asDiagonal());
     const Eigen::Matrix3d of_normal = others * covariance * others.transpose();
-    const Eigen::Vector3d tilt = (result->driving - n * n.dot(result->driving)).normalized();
+    const Eigen::Vector3d tilt = (result.driving - n * n.dot(result.driving)).normalized();
     const Eigen::Vector3d roll = n.cross(tilt);
-    const double tilt_sigma = std::sqrt(tilt.dot(of_normal * tilt));
-    const double roll_sigma = std::sqrt(roll.dot(of_normal * roll));
-    if (!IsSmall(tilt_sigma) || !IsSmall(roll_sigma)) return false;
-    result->level = CalibrationLevel::kFull;
-    result->normal = n;
-    result->tilt_sigma = tilt_sigma;
-    result->roll_sigma = roll_sigma;
-    result->translation_spread = translation_spread_;
-    result->rotation_spread = rotation_spread_;
-    return true;
+    fit_.tilt_sigma = std::sqrt(tilt.dot(of_normal * tilt));
+    fit_.roll_sigma = std::sqrt(roll.dot(of_normal * roll));
+    return IsSmall(fit_.tilt_sigma) && IsSmall(fit_.roll_sigma);
   }
 
   // Turns the start towards the driving direction only.
-  bool FitTilt(PlaneCalibration* result) {
-    const Eigen::Vector3d f = result->driving;
-    const Eigen::Vector3d side = start_.cross(f);
-    if (!(side.norm() > std::cos(DegToRad(kMaxCalibrationTurnDeg)))) return false;
+  bool FitTilt(const PlaneCalibration& result) {
+    const Eigen::Vector3d f = result.driving;
     Eigen::Vector3d n = start_;
     double sigma = -1.0;
     for (int k = 0; k < kMaxIterations; ++k) {
@@ -182,16 +226,13 @@ class PlaneFit {
       }
       const double step = -gradient / curvature;
       n = (n + step * along).normalized();
-      sigma = std::sqrt(SmallSampleFactor(result->translations, 1) * squares) / curvature;
+      sigma = std::sqrt(SmallSampleFactor(result.translations, 1) * squares) / curvature;
       if (std::abs(step) < kConverged) break;
     }
-    if (!IsSmall(sigma) || AngleBetween(n, start_) > DegToRad(kMaxCalibrationTurnDeg)) return false;
-    result->level = CalibrationLevel::kTilt;
-    result->normal = n;
-    result->tilt_sigma = sigma;
-    result->translation_spread = translation_spread_;
-    result->rotation_spread = rotation_spread_;
-    return true;
+    fit_ = Fit();
+    fit_.normal = n;
+    fit_.tilt_sigma = sigma;
+    return IsSmall(sigma) && AngleBetween(n, start_) <= DegToRad(kMaxCalibrationTurnDeg);
   }
 
   double DirectionWeight(size_t i) const {
@@ -202,6 +243,7 @@ class PlaneFit {
   }
 
   const Eigen::Vector3d start_;
+  Fit fit_;                                  // of the last fit
   std::vector<Eigen::Vector3d> directions_;  // of translations
   std::vector<Eigen::Vector3d> rotations_;   // rotation vectors
   double translation_spread_ = 1.0, rotation_spread_ = 1.0;
@@ -225,13 +267,21 @@ class GravityFit {
       return result;
     }
     if (Fit(3, &result)) return result;
-    if (Fit(2, &result)) {
+    if (turn_ < 0 && Fit(2, &result)) {
       result.message =
           "the turn about the vertical is not observable: too little rotation about other axes";
       return result;
     }
-    result.message = "too little rotation: " + std::to_string(result.pairs) + " of " +
-                     std::to_string(all_.size()) + " pairs turn by more than the noise";
+    if (turn_ >= 0) {
+      result.message = "the frame of the stated gravity is turned by " + DegreesText(turn_) +
+                       " against the body" + TooFar() + "; turn the lines into the body first";
+    } else if (scatters_) {
+      result.message =
+          "the stated gravity scatters too much: sd of its tilt " + SigmasText(scatter_, -1.0);
+    } else {
+      result.message = "too little rotation: " + std::to_string(result.pairs) + " of " +
+                       std::to_string(all_.size()) + " pairs turn by more than the noise";
+    }
     return result;
   }
 
@@ -290,12 +340,17 @@ class GravityFit {
       C = ExpSO3(basis * step) * C;
       if (step.norm() < kConverged) break;
     }
-    if (LogSO3(C).norm() > DegToRad(kMaxCalibrationTurnDeg)) return false;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> tilts(
         Eigen::Matrix2d(covariance.topLeftCorner<2, 2>()));
     const double tilt_sigma = std::sqrt(tilts.eigenvalues()(1));
     const double yaw_sigma = parameters == 3 ? std::sqrt(covariance(2, 2)) : -1.0;
-    if (!IsSmall(tilt_sigma) || (parameters == 3 && !IsSmall(yaw_sigma))) return false;
+    scatters_ = !IsSmall(tilt_sigma);
+    scatter_ = tilt_sigma;
+    if (scatters_ || (parameters == 3 && !IsSmall(yaw_sigma))) return false;
+    if (LogSO3(C).norm() > DegToRad(kMaxCalibrationTurnDeg)) {
+      turn_ = LogSO3(C).norm();
+      return false;
+    }
     result->level = parameters == 3 ? CalibrationLevel::kFull : CalibrationLevel::kTilt;
     result->C = C;
     result->tilt_sigma = tilt_sigma;
@@ -305,6 +360,9 @@ class GravityFit {
   }
 
   std::vector<const CalibrationMotion*> all_;
+  double turn_ = -1.0;  // of a C that is determined, but too large to be believed
+  bool scatters_ = false;
+  double scatter_ = -1.0;
 };
 
 }  // namespace

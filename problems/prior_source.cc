@@ -31,14 +31,26 @@ bool ParsePriorNoiseAxis(std::string_view name, PriorNoiseAxis* axis) {
 }
 
 bool ApplyPriorSource(const PriorSourceOptions& options, int index, FramePair* pair,
-                      std::string* error) {
+                      std::string* error, AppliedAxes* applied) {
   MotionPrior& prior = pair->prior;
-  const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
+  BodyAxes axes;
+  const std::optional<Eigen::Vector3d> stated_forward =
+      options.forward ? options.forward : prior.forward;
+  if (!ResolveBodyAxes(pair->rig, options.down, stated_forward, &axes, error)) {
+    *error = pair->name + ": " + *error + "; state --down, --forward or both";
+    return false;
+  }
+  prior.forward = axes.forward;
+  bool uses_down = false;
+  const auto down = [&] {
+    uses_down = true;
+    return axes.down;
+  };
   switch (options.source) {
     case PriorSource::kFile:
       break;
     case PriorSource::kBody:
-      prior.gravity1 = prior.gravity2 = prior.axis = prior.normal = y;
+      prior.gravity1 = prior.gravity2 = prior.axis = prior.normal = down();
       break;
     case PriorSource::kTruth: {
       if (!pair->truth.has_value()) {
@@ -46,10 +58,11 @@ bool ApplyPriorSource(const PriorSourceOptions& options, int index, FramePair* p
         return false;
       }
       const Pose& truth = *pair->truth;
-      if (!prior.gravity1.has_value()) prior.gravity1 = y;
+      if (!prior.gravity1.has_value()) prior.gravity1 = down();
       prior.gravity2 = truth.R * *prior.gravity1;
       const Eigen::Vector3d omega = LogSO3(truth.R);
-      const Eigen::Vector3d axis = omega.norm() > 1e-6 ? Eigen::Vector3d(omega.normalized()) : y;
+      const Eigen::Vector3d axis =
+          omega.norm() > 1e-6 ? Eigen::Vector3d(omega.normalized()) : down();
       prior.axis = axis;
       prior.normal = axis;
       if (truth.t.norm() > 0) {
@@ -68,8 +81,9 @@ bool ApplyPriorSource(const PriorSourceOptions& options, int index, FramePair* p
     Random random = Random::Stream(options.seed ^ 0x7072696f72ULL, static_cast<uint64_t>(index));
     const double sign = random.Uniform() < 0.5 ? -1.0 : 1.0;
     Eigen::Vector3d about = random.UnitVector3();
-    if (options.noise_axis == PriorNoiseAxis::kPitch) about = Eigen::Vector3d::UnitX();
-    if (options.noise_axis == PriorNoiseAxis::kRoll) about = Eigen::Vector3d::UnitZ();
+    if (options.noise_axis == PriorNoiseAxis::kPitch) about = axes.Right();
+    if (options.noise_axis == PriorNoiseAxis::kRoll) about = axes.forward;
+    if (options.noise_axis == PriorNoiseAxis::kPitch) uses_down = true;
     const Eigen::Matrix3d disturb = ExpSO3(sign * options.noise * about);
     if (prior.gravity2.has_value()) prior.gravity2 = disturb * *prior.gravity2;
     if (prior.axis.has_value()) prior.axis = disturb * *prior.axis;
@@ -77,6 +91,12 @@ bool ApplyPriorSource(const PriorSourceOptions& options, int index, FramePair* p
   }
   if (options.sigma.has_value()) {
     prior.gravity_sigma = prior.axis_sigma = prior.normal_sigma = options.sigma;
+  }
+  if (applied != nullptr) {
+    applied->axes = axes;
+    applied->down_suggested = uses_down && !options.down;
+    applied->cameras_off_down = CamerasOffDown(pair->rig, axes.down);
+    applied->forward_suggested = !stated_forward;
   }
   return true;
 }

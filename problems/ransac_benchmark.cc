@@ -225,7 +225,8 @@ class Collector {
   void AddClean(const FramePair& clean, const MotionEstimate& estimate) {
     ++with_clean_;
     if (estimate.HasMotion() &&
-        HoldsStaticMatches(clean, estimate.pose, task_.estimate.ransac.threshold_px)) {
+        HoldsStaticMatches(clean, estimate.pose,
+                           ThresholdPx(task_.estimate.ransac.threshold_px, clean.rig))) {
       ++static_wins_;
     }
     const MotionEstimate undisturbed = EstimateOnce(task_, clean);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rigel/problems/ransac_benchmark.h"
+#include "rigel/problems/report_json.h"
 #include "rigel/problems/table.h"
 
 namespace rigel {
@@ -140,8 +141,7 @@ std::string RansacBenchmarkTable(const std::vector<RansacBenchmarkRow>& rows,
 
 std::string RansacBenchmarkJson(const std::vector<RansacBenchmarkRow>& rows,
                                 const RansacBenchmarkOptions& options) {
-  Json report;
-  report["format"] = "rigel-ransac-benchmark 1";
+  Json report = NewReport("rigel-ransac-benchmark 1");
   report["experiment"] = RansacExperimentName(options.experiment);
   report["options"] = {{"seed", options.seed}};
   report["results"] = Json::array();

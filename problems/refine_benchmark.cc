@@ -13,6 +13,7 @@
 #include "rigel/core/random.h"
 #include "rigel/minimal/grouped_matches.h"
 #include "rigel/problems/opengv_peers.h"
+#include "rigel/problems/report_json.h"
 #include "rigel/problems/statistics.h"
 #include "rigel/problems/synthetic.h"
 #include "rigel/problems/table.h"
@@ -170,8 +171,7 @@ std::string RefineBenchmarkTable(const std::vector<RefineBenchmarkRow>& rows) {
 
 std::string RefineBenchmarkJson(const std::vector<RefineBenchmarkRow>& rows,
                                 const RefineBenchmarkOptions& options) {
-  nlohmann::ordered_json report;
-  report["format"] = "rigel-refine-benchmark 1";
+  nlohmann::ordered_json report = NewReport("rigel-refine-benchmark 1");
   report["options"] = {{"problems", options.problems},
                        {"num_matches", options.num_matches},
                        {"rotation_deg", options.rotation_deg},

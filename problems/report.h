@@ -12,6 +12,7 @@
 #include "rigel/problems/comparison.h"
 #include "rigel/problems/shard.h"
 #include "rigel/problems/trajectory.h"
+#include "rigel/problems/version.h"
 #include "rigel/refine/estimate_motion.h"
 
 namespace rigel {
@@ -21,6 +22,7 @@ using ReportOptions = std::vector<std::pair<std::string, std::string>>;
 
 // All that a report of rigel_compare is made of.
 struct ComparisonReport {
+  std::string version = RigelVersion();  // whose results they are; empty: of 0.1
   ReportOptions options;
   std::vector<SolverResults> solvers;  // at least one, all of the same pairs
   std::optional<Shard> shard;          // of a run over a part of the files, ...
@@ -60,6 +62,10 @@ struct EstimateReport {
 std::string EstimateTable(const EstimateReport& report);
 std::string EstimateJson(const EstimateReport& report, bool times);
 std::string EstimateCsv(const EstimateReport& report, bool times);
+
+// What contradicts the rig, as lines of printable text: of one kind and camera pair the first, with
+// its pair and the number of others.
+std::vector<std::string> RigDoubtLines(const EstimateReport& report);
 
 // Drift of report.trajectories that have a truth; 100 columns at most. Empty if none has.
 std::string DriftTable(const EstimateReport& report);

@@ -38,15 +38,6 @@ double ExactRadians(double degrees) {
 // Reading fails by exceptions, of the JSON library and these, which do not leave this file.
 [[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
 
-int Integer(const Json& json, int min) {
-  if (!json.is_number_integer()) Fail(QuoteJson(json) + ", expected an integer");
-  const auto value = json.get<int64_t>();
-  if (value < min || value > std::numeric_limits<int>::max()) {
-    Fail(QuoteJson(json) + ", expected an integer from " + std::to_string(min));
-  }
-  return static_cast<int>(value);
-}
-
 MotionErrors Errors(const Json& json) {
   MotionErrors errors;
   errors.rotation = ExactRadians(json.at("rotation_deg").get<double>());
@@ -80,10 +71,10 @@ PairResult Result(const Json& json) {
   }
   if (json.contains("nees")) {
     result.nees = json.at("nees").at("value").get<double>();
-    result.nees_dof = Integer(json.at("nees").at("degrees_of_freedom"), 1);
+    result.nees_dof = JsonInteger(json.at("nees").at("degrees_of_freedom"), 1);
   }
   result.inlier_ratio = json.at("inlier_ratio").get<double>();
-  result.iterations = Integer(json.at("iterations"), 0);
+  result.iterations = JsonInteger(json.at("iterations"), 0);
   if (json.contains("time_ms")) {
     result.ransac_ms = json.at("time_ms").at("ransac").get<double>();
     result.refine_ms = json.at("time_ms").at("refine").get<double>();
@@ -101,9 +92,11 @@ ComparisonReport Report(std::string_view text) {
   if (json.at("format") != "rigel-report 1") Fail("its format is not 'rigel-report 1'");
   if (!json.contains("shard")) Fail("it is not the report of a shard: made without --shard=i/n");
   ComparisonReport report;
+  report.version.clear();
+  if (json.contains("rigel_version")) report.version = json.at("rigel_version").get<std::string>();
   const Json& shard = json.at("shard");
-  report.shard = Shard{Integer(shard.at("index"), 0), Integer(shard.at("count"), 1)};
-  report.num_files = Integer(shard.at("files"), 0);
+  report.shard = Shard{JsonInteger(shard.at("index"), 0), JsonInteger(shard.at("count"), 1)};
+  report.num_files = JsonInteger(shard.at("files"), 0);
   if (report.shard->index >= report.shard->count) Fail("the index of its shard is not below count");
   for (const auto& [name, value] : json.at("options").items()) {
     report.options.emplace_back(name, value.get<std::string>());
@@ -122,7 +115,7 @@ ComparisonReport Report(std::string_view text) {
       solver.pairs.push_back(std::move(result));
     }
   }
-  const int num_pairs = Integer(json.at("pairs"), 0);
+  const int num_pairs = JsonInteger(json.at("pairs"), 0);
   if (report.solvers.front().pairs.size() != static_cast<size_t>(num_pairs)) {
     Fail("it has the results of " + std::to_string(report.solvers.front().pairs.size()) +
          " pairs, expected " + std::to_string(num_pairs));
@@ -145,6 +138,10 @@ int LineOfOverflow(std::string_view text, const std::exception& exception) {
 
 std::string ShardText(const Shard& shard) {
   return std::to_string(shard.index) + "/" + std::to_string(shard.count);
+}
+
+std::string VersionText(const ComparisonReport& report) {
+  return report.version.empty() ? "0.1" : report.version;
 }
 
 const std::string* FindOption(const ReportOptions& options, const std::string& name) {
@@ -204,6 +201,10 @@ bool MergeShards(const std::vector<std::string>& names, std::vector<ComparisonRe
                   std::to_string(first.num_files) + " files and " + ShardText(*report.shard) +
                   " of " + std::to_string(report.num_files));
     }
+    if (report.version != first.version) {
+      return fail(both + "made by other versions: " + VersionText(first) + " and " +
+                  VersionText(report));
+    }
     const std::string difference = Difference(first.options, report.options);
     if (!difference.empty()) return fail(both + "made with other options: " + difference);
     for (size_t other = 0; other < k; ++other) {
@@ -223,6 +224,7 @@ bool MergeShards(const std::vector<std::string>& names, std::vector<ComparisonRe
                 std::to_string(shards->size()) + " reports of " + std::to_string(count));
   }
 
+  whole->version = first.version;
   whole->options = first.options;
   whole->shard.reset();
   whole->num_files = 0;

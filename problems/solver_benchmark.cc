@@ -14,6 +14,7 @@
 #include "rigel/core/angles.h"
 #include "rigel/core/metrics.h"
 #include "rigel/core/random.h"
+#include "rigel/problems/report_json.h"
 #include "rigel/problems/statistics.h"
 #include "rigel/problems/synthetic.h"
 #include "rigel/problems/table.h"
@@ -104,6 +105,7 @@ std::vector<Problem> MakeProblems(const SolverInfo& solver, const SolverBenchmar
       truth.t = -(RotationY(DegToRad(0.5 * options.rotation_deg)) * Eigen::Vector3d::UnitZ());
       if (!MakeScenePair(scene, k, truth, &problem.pair, &error)) continue;
       problem.pair.prior.normal = Eigen::Vector3d::UnitY();
+      problem.pair.prior.forward = Eigen::Vector3d::UnitZ();
     }
     if (!MakeAlignment(problem.pair.prior, solver.prior, &alignment, &error)) continue;
     problem.sample.resize(solver.sample_size);
@@ -262,8 +264,7 @@ std::string SolverBenchmarkTable(const std::vector<SolverBenchmarkRow>& rows) {
 
 std::string SolverBenchmarkJson(const std::vector<SolverBenchmarkRow>& rows,
                                 const SolverBenchmarkOptions& options, double reference_us) {
-  nlohmann::ordered_json report;
-  report["format"] = "rigel-benchmark 1";
+  nlohmann::ordered_json report = NewReport("rigel-benchmark 1");
   report["options"] = {{"num_cameras", options.num_cameras},
                        {"trials", options.trials},
                        {"rotation_deg", options.rotation_deg},

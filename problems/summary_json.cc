@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include "rigel/problems/json_text.h"
+
 namespace rigel {
 namespace {
 
@@ -66,9 +68,9 @@ SolverSummary ParseSummary(const Json& json) {
   SolverSummary s;
   s.solver = json.at("solver").get<std::string>();
   s.sequence = json.at("sequence").get<std::string>();
-  s.pairs = json.at("pairs").get<int>();
-  s.failures = json.at("failures").get<int>();
-  s.direction_pairs = json.at("direction_pairs").get<int>();
+  s.pairs = JsonInteger(json.at("pairs"), 0);
+  s.failures = JsonInteger(json.at("failures"), 0);
+  s.direction_pairs = JsonInteger(json.at("direction_pairs"), 0);
   const Json none = Json::object();
   const auto group = [&](const char* key) -> const Json& {
     return json.contains(key) ? json.at(key) : none;

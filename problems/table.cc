@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "rigel/problems/printable.h"
+
 namespace rigel {
 namespace {
 
@@ -14,7 +16,21 @@ size_t Length(const std::string& text) {
   return static_cast<size_t>(std::count_if(text.begin(), text.end(), StartsCharacter));
 }
 
+std::vector<std::string> PrintableCells(const std::vector<std::string>& cells) {
+  std::vector<std::string> printable;
+  for (const std::string& cell : cells) printable.push_back(Printable(cell));
+  return printable;
+}
+
 }  // namespace
+
+void Table::AddHeader(const std::vector<std::string>& cells) {
+  headers_.push_back(PrintableCells(cells));
+}
+
+void Table::AddRow(const std::vector<std::string>& cells) {
+  rows_.push_back(PrintableCells(cells));
+}
 
 std::string Table::Format() const {
   std::vector<size_t> widths;

@@ -9,14 +9,15 @@
 namespace rigel {
 
 // Columns are as wide as their widest cell, in UTF-8 characters; the first is aligned left, the
-// others right, `gap` blanks apart. No trailing blanks.
+// others right, `gap` blanks apart. No trailing blanks. What a terminal would obey
+// (rigel/problems/printable.h) is shown in hexadecimal.
 class Table {
  public:
   explicit Table(int gap = 2) : gap_(gap) {}
 
   // Several header rows are allowed.
-  void AddHeader(const std::vector<std::string>& cells) { headers_.push_back(cells); }
-  void AddRow(const std::vector<std::string>& cells) { rows_.push_back(cells); }
+  void AddHeader(const std::vector<std::string>& cells);
+  void AddRow(const std::vector<std::string>& cells);
   std::string Format() const;
 
  private:

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "rigel/core/rig_centre.h"
 #include "rigel/problems/csv.h"
 #include "rigel/problems/match_file.h"
 
@@ -11,7 +12,6 @@ namespace {
 
 // A stated distance within so many of its sigma, and a centimetre, is consistent with zero.
 constexpr double kStillSigmas = 3.0;
-constexpr double kStillMetres = 1e-2;
 
 struct Step {
   std::string why_not;  // not empty: there is no step
@@ -20,17 +20,20 @@ struct Step {
   bool stated_length = false;
 };
 
-Eigen::Vector3d WithLength(const Eigen::Vector3d& t, double length) {
-  const double norm = t.norm();
-  return norm > 0 ? Eigen::Vector3d(t * (length / norm)) : t;
-}
+}  // namespace
 
-// The matches say that the body stands still, and the file does not say otherwise.
 bool StandsStill(const FramePair& pair, const RefineSummary& refine) {
+  if (refine.RigDirectionKnown() || !refine.rotation_observable) return false;
   if (!(refine.parallax_px >= 0 && refine.parallax_px <= refine.parallax_limit_px)) return false;
   const MotionPrior& prior = pair.prior;
   return !prior.distance || *prior.distance <= kStillMetres + kStillSigmas * prior.distance_sigma;
 }
+
+Pose Standing(const Pose& pose, const RefineSummary& refine) {
+  return MotionOfBody({pose.R, Eigen::Vector3d::Zero()}, refine.fitted_point);
+}
+
+namespace {
 
 Step StepOf(const FramePair& pair, const MotionEstimate& e, bool has_inter) {
   Step step;
@@ -46,11 +49,11 @@ Step StepOf(const FramePair& pair, const MotionEstimate& e, bool has_inter) {
   bool has_length = e.raw.has_scale && has_inter;
   if (refined) {
     if (!refine.rotation_observable) return none("rotation not observable");
-    if (!refine.translation_observable) {
+    if (!refine.RigDirectionKnown()) {
       if (!StandsStill(pair, refine)) return none("direction of translation not observable");
       step.still = true;
-      step.estimate.t.setZero();
-      step.raw.t.setZero();
+      step.estimate = Standing(step.estimate, refine);
+      step.raw = Standing(step.raw, refine);
       return step;
     }
     // -1 and NaN are not known, either.
@@ -62,10 +65,11 @@ Step StepOf(const FramePair& pair, const MotionEstimate& e, bool has_inter) {
       return none("length of translation not determined, no distance stated");
     }
     step.stated_length = true;
-    step.estimate.t = WithLength(step.estimate.t, *pair.prior.distance);
+    step.estimate = WithBodyLength(step.estimate, refine.fitted_point, *pair.prior.distance);
   }
   if (!e.raw.has_scale || step.stated_length) {
-    step.raw.t = WithLength(step.raw.t, step.estimate.t.norm());
+    const double length = step.estimate.t.norm();
+    if (length > 0) step.raw = WithBodyLength(step.raw, refine.fitted_point, length);
   }
   return step;
 }

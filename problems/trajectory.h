@@ -20,6 +20,14 @@ inline constexpr double kSameTimeSeconds = 1e-6;
 // An estimated |t| counts as a length up to this relative standard deviation.
 inline constexpr double kRoughScaleRatio = 0.5;
 
+// The matches say that the rig stands still, to within kStillMetres, and no distance is stated that
+// contradicts.
+inline constexpr double kStillMetres = 1e-2;
+bool StandsStill(const FramePair& pair, const RefineSummary& refine);
+
+// The motion with this rotation and the rig's centre at rest: t = 0 where the body's origin is it.
+Pose Standing(const Pose& pose, const RefineSummary& refine);
+
 // Why pair k, k > 0, does not start where pair k - 1 ended; empty if it does: a pair is missing
 // between them (by `positions`, see below), another sequence, or another time. What a pair does not
 // state does not part it from the other.
@@ -46,10 +54,9 @@ struct Trajectory {
 //   - at a pair that has no motion, or none with a length: not estimated or not refined, rotation
 //     or direction of t not observable, |t| not determined (its relative standard deviation above
 //     kRoughScaleRatio) and no distance stated. That pair is in none.
-// Standing still is no gap: where |t| is consistent with zero, and no distance is stated that
-// contradicts, the step has no translation. Without a refinement |t| counts as determined where the
-// hypothesis has a scale and matches between cameras, which `has_inter` tells of each pair.
-// A raw motion without a length of its own has that of the estimate.
+// Standing still is no gap: StandsStill() makes a Standing() step. Without a refinement |t| counts
+// as determined where the hypothesis has a scale and matches between cameras, which `has_inter`
+// tells of each pair. A raw motion without a length of its own has that of the estimate.
 //
 // Each gap is told in one line of printable text in *notes.
 std::vector<Trajectory> ChainMotions(const std::vector<FramePair>& pairs,

@@ -18,9 +18,10 @@ std::string FormatKittiTrajectory(const std::vector<Pose>& world_from_body) {
 }
 
 std::string FormatTumTrajectory(const std::vector<Pose>& world_from_body,
-                                const std::vector<double>& times) {
-  std::string text;
-  if (times.empty()) text = "# no times that ascend in the match files: poses are numbered\n";
+                                const std::vector<double>& times, const BodyAxes& axes) {
+  std::string text = "# body: down " + DirectionText(axes.down) + ", forward " +
+                     DirectionText(axes.forward) + "\n";
+  if (times.empty()) text += "# no times that ascend in the match files: poses are numbered\n";
   for (size_t k = 0; k < world_from_body.size(); ++k) {
     const Pose& pose = world_from_body[k];
     const Eigen::Quaterniond q = pose.Quaternion();

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "rigel/core/body_axes.h"
 #include "rigel/core/pose.h"
 
 namespace rigel {
@@ -18,9 +19,11 @@ namespace rigel {
 // No comments: the benchmark's own reader knows none.
 std::string FormatKittiTrajectory(const std::vector<Pose>& world_from_body);
 
-// Without times (an empty list) the poses are numbered 0, 1, ..., which a comment line says.
+// Begins with a comment line that says which axes of the body are down and forward, "# body: down
+// +y, forward +z", for who looks at it from above. Without times (an empty list) the poses are
+// numbered 0, 1, ..., which another comment line says.
 std::string FormatTumTrajectory(const std::vector<Pose>& world_from_body,
-                                const std::vector<double>& times);
+                                const std::vector<double>& times, const BodyAxes& axes);
 
 // The name of the file of one of `count` trajectories: `path` itself if there is one only, else
 // with "_0", "_1", ... before its extension. `truth`: with "_truth" before that.

@@ -5,6 +5,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
+#include "rigel/core/rig_centre.h"
+
 namespace rigel {
 namespace {
 
@@ -92,22 +94,26 @@ Matrix6d InformationMatrix(const RefineSummary& summary, const Pose& f2_from_f1)
   if (!summary.IsSolutionUsable() || !summary.covariance || !summary.rotation_observable) {
     return Matrix6d::Zero();
   }
-  Matrix6d covariance = *summary.covariance;
-  if (!summary.translation_observable) {
+  if (!summary.RigDirectionKnown()) {
+    Matrix6d covariance = *summary.covariance;
     covariance.bottomRows<3>().setZero();
     covariance.rightCols<3>().setZero();
     return PseudoInformation(covariance);
   }
-  Matrix6d information = PseudoInformation(covariance);
-  const double norm = f2_from_f1.t.norm();
+  // Of the motion that was fitted, whose rank and null direction are known.
+  const Eigen::Vector3d& point = summary.fitted_point;
+  const Matrix6d from_body = BodyFromPointJacobian(f2_from_f1.R, -point);
+  Matrix6d information = PseudoInformation(from_body * *summary.covariance * from_body.transpose());
+  const Eigen::Vector3d b = MotionOfPoint(f2_from_f1, point).t;
+  const double norm = b.norm();
   if (!summary.scale_free && norm > 0) {
     // The direction without information is known: without it to the last digit.
     Eigen::Matrix<double, 6, 1> held = Eigen::Matrix<double, 6, 1>::Zero();
-    held.tail<3>() = f2_from_f1.t / norm;
+    held.tail<3>() = b / norm;
     const Matrix6d free = Matrix6d::Identity() - held * held.transpose();
     information = Symmetric(free * information * free);
   }
-  return information;
+  return Symmetric(from_body.transpose() * information * from_body);
 }
 
 BetweenFactor GtsamBetweenFactor(const Pose& f2_from_f1, const Matrix6d& covariance) {
@@ -129,13 +135,17 @@ BetweenFactor G2oEdge(const Pose& f2_from_f1, const RefineSummary& summary) {
 }
 
 void SetUndeterminedLength(double length, Pose* f2_from_f1, RefineSummary* summary) {
-  const double norm = f2_from_f1->t.norm();
-  if (!(norm > 0)) return;
-  const double ratio = length / norm;
-  f2_from_f1->t *= ratio;
+  const Eigen::Vector3d& point = summary->fitted_point;
+  const double before = MotionOfPoint(*f2_from_f1, point).t.norm();
+  if (!(before > 0)) return;
+  *f2_from_f1 = WithBodyLength(*f2_from_f1, point, length);
   if (!summary->covariance) return;
-  summary->covariance->bottomRows<3>() *= ratio;
-  summary->covariance->rightCols<3>() *= ratio;
+  const double ratio = MotionOfPoint(*f2_from_f1, point).t.norm() / before;
+  Matrix6d scale = Matrix6d::Identity();
+  scale.diagonal().tail<3>().setConstant(ratio);
+  const Matrix6d jacobian = BodyFromPointJacobian(f2_from_f1->R, point) * scale *
+                            BodyFromPointJacobian(f2_from_f1->R, -point);
+  *summary->covariance = jacobian * *summary->covariance * jacobian.transpose();
 }
 
 Matrix6d SqrtInformation(const Matrix6d& information) {

@@ -17,8 +17,9 @@
 //
 // Information where not everything is determined: what Rigel's covariance leaves out or calls not
 // observable has none, exactly zero, never a large number made up. In Rigel's convention:
-//   - |t| was held: none along t, and that of the five free directions given |t|;
-//   - the direction of t is not observable: none for the translation, and that of the rotation
+//   - a length was held: none along b, the motion of the rig's centre (rig_centre.h; where |t| is
+//     held, t), and that of the five free directions given |b|;
+//   - the direction of b is not observable: none for the translation, and that of the rotation
 //     whatever the translation is (its marginal);
 //   - the rotation is not observable, or there is no covariance: none at all;
 //   - an exact prior held a part of the rotation or of t: none there, either. What is known of it
@@ -26,8 +27,7 @@
 #ifndef RIGEL_REFINE_BETWEEN_FACTOR_H_
 #define RIGEL_REFINE_BETWEEN_FACTOR_H_
 
-#include <Eigen/Core>
-
+#include "rigel/core/eigen_types.h"
 #include "rigel/core/pose.h"
 #include "rigel/refine/refine.h"
 #include "rigel/refine/uncertainty.h"
@@ -42,6 +42,7 @@ struct BetweenFactor {
   Matrix6d covariance = Matrix6d::Zero();
   Matrix6d information = Matrix6d::Zero();
 };
+static_assert(kSameLayoutEverywhere<BetweenFactor>, "no member of BetweenFactor may be aligned");
 
 // d(w, v) / d(d, e) and d(v, h) / d(d, e) at the motion. Never singular.
 Matrix6d GtsamJacobian(const Pose& f2_from_f1);
@@ -66,9 +67,9 @@ BetweenFactor GtsamBetweenFactor(const Pose& f2_from_f1, const RefineSummary& su
 BetweenFactor G2oEdge(const Pose& f2_from_f1, const RefineSummary& summary);
 
 // Sets |t| = `length` > 0 where the matches do not determine it (what is found then may be
-// anything, thousands of kilometres too) and takes the covariance of the summary along: that of the
-// rotation and of the direction of t stays. A back end weighs the direction rightly if `length` is
-// near the true one. Does nothing if t = 0.
+// anything, thousands of kilometres too) and takes the covariance of the summary along: R and the
+// direction of b, and their covariance, stay (WithBodyLength()). A back end weighs the direction
+// rightly if `length` is near the true one. Does nothing if b = 0.
 void SetUndeterminedLength(double length, Pose* f2_from_f1, RefineSummary* summary);
 
 // Upper triangular S with S'S = information, of a positive semidefinite matrix too, where a

@@ -86,12 +86,29 @@ class PriorCost : public ceres::CostFunction {
   double unit_;  // the image noise: residuals of matches are in pixels, the prior's in sigmas
 };
 
+// Tells of each iteration and ends the solution when it is asked to.
+class IterationReport : public ceres::IterationCallback {
+ public:
+  IterationReport(Stop* stop, const std::function<void(int, double)>* progress)
+      : stop_(*stop), progress_(progress) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
+    if (progress_ != nullptr) (*progress_)(iteration.iteration, iteration.cost);
+    return stop_.Asked() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  Stop& stop_;
+  const std::function<void(int, double)>* progress_;
+};
+
 }  // namespace
 
 LeastSquaresSummary SolveWithCeres(const RefineOptions& options, const GroupedMatches& matches,
                                    const MotionParameterization& parameterization,
                                    const std::vector<double>& weights, const PriorResiduals& prior,
-                                   double noise_px, const Pose& start, double* parameters) {
+                                   double noise_px, const Pose& start, Stop* stop,
+                                   const std::function<void(int, double)>* progress,
+                                   double* parameters) {
   const int size = parameterization.size();
   const EpipolarResiduals residuals(matches, options.residual);
   SharedEvaluation shared(parameterization, residuals, parameters);
@@ -109,6 +126,7 @@ LeastSquaresSummary SolveWithCeres(const RefineOptions& options, const GroupedMa
   problem_options.disable_all_safety_checks = true;
   problem_options.evaluation_callback = &shared;
   ceres::Problem problem(problem_options);
+  constexpr int kStopEvery = 1024;
   const bool bundle = options.form == RefineForm::kBundle;
   std::deque<ReprojectionCost> reprojections;
   // In one piece: Ceres orders the blocks of a group by their addresses.
@@ -116,6 +134,12 @@ LeastSquaresSummary SolveWithCeres(const RefineOptions& options, const GroupedMa
   if (bundle) points.reserve(weights.size());
   for (int k = 0; k < matches.size(); ++k) {
     if (weights[k] == 0.0) continue;
+    // The start is what there is by then.
+    if (k % kStopEvery == 0 && stop->Asked()) {
+      LeastSquaresSummary summary;
+      summary.usable = true;
+      return summary;
+    }
     if (bundle) {
       const Match& match = matches.matches()[k];
       points.push_back(ReprojectionCost::Triangulate(matches.rig(), match, start));
@@ -147,6 +171,8 @@ LeastSquaresSummary SolveWithCeres(const RefineOptions& options, const GroupedMa
   // Undetermined points must not make a step fail: Ceres would log that.
   solver_options.min_lm_diagonal = 1e-4;
   solver_options.max_trust_region_radius = 1e6;
+  IterationReport report(stop, progress);
+  solver_options.callbacks.push_back(&report);
   ceres::Solver::Summary ceres_summary;
   ceres::Solve(solver_options, &problem, &ceres_summary);
 

@@ -4,9 +4,11 @@
 #ifndef RIGEL_REFINE_CERES_ENGINE_H_
 #define RIGEL_REFINE_CERES_ENGINE_H_
 
+#include <functional>
 #include <vector>
 
 #include "rigel/core/pose.h"
+#include "rigel/core/stop.h"
 #include "rigel/minimal/grouped_matches.h"
 #include "rigel/refine/motion_parameterization.h"
 #include "rigel/refine/prior_residuals.h"
@@ -19,11 +21,14 @@ namespace rigel {
 // them. Of `options` the form (bundle or not), the residual, the loss and the number of iterations
 // count. `weights` multiply the residuals (grouped order; 0 leaves a match out), `noise_px` is the
 // unit of the loss's scale and of the residuals of `prior`; the points of a bundle adjustment start
-// where the matches meet under `start`.
+// where the matches meet under `start`. `stop` is asked while the problem is built and after each
+// iteration; `progress` (null: not) is called after each, with its number, from 0, and the cost.
 LeastSquaresSummary SolveWithCeres(const RefineOptions& options, const GroupedMatches& matches,
                                    const MotionParameterization& parameterization,
                                    const std::vector<double>& weights, const PriorResiduals& prior,
-                                   double noise_px, const Pose& start, double* parameters);
+                                   double noise_px, const Pose& start, Stop* stop,
+                                   const std::function<void(int, double)>* progress,
+                                   double* parameters);
 
 }  // namespace rigel
 

@@ -126,8 +126,10 @@ class EpipolarCost final : public ceres::CostFunction {
     }
 
     Gradient by;
-    residuals[0] = Sampson(R, t, camera_i.R, camera_i.t, camera_j.R, camera_j.t,
-                           jacobians == nullptr ? nullptr : &by);
+    if (!Sampson(R, t, camera_i.R, camera_i.t, camera_j.R, camera_j.t, &residuals[0],
+                 jacobians == nullptr ? nullptr : &by)) {
+      return false;
+    }
     if (jacobians == nullptr) return true;
 
     const auto write = [&](int k, const PoseBlocks& pose, const Eigen::Vector3d& by_w,
@@ -152,7 +154,7 @@ class EpipolarCost final : public ceres::CostFunction {
   }
 
  private:
-  // The residual, and its gradient if one is wanted.
+  // The residual, and its gradient if one is wanted. False at E = 0, where there is none.
   //
   // With y = R Q_i u_i and z = Q_j u_j, in f2, the constraint is C = z . (b x y) = u_j'E u_i. It is
   // divided by |g|, g = (g_i, g_j) its derivatives by the pixels. Since d|g|^2 / 2 = h_j'dE u_i +
@@ -160,9 +162,10 @@ class EpipolarCost final : public ceres::CostFunction {
   //   dr = (dC - C / |g|^2 (h_j'dE u_i + u_j'dE h_i)) / |g|
   // is the differential of two triple products z . (b x y) with constant camera vectors: of
   // (u_j - C / |g|^2 h_j, u_i) and of (-C / |g|^2 u_j, h_i).
-  double Sampson(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, const Eigen::Matrix3d& Q_i,
-                 const Eigen::Vector3d& s_i, const Eigen::Matrix3d& Q_j, const Eigen::Vector3d& s_j,
-                 Gradient* by) const {
+  bool Sampson(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, const Eigen::Matrix3d& Q_i,
+               const Eigen::Vector3d& s_i, const Eigen::Matrix3d& Q_j, const Eigen::Vector3d& s_j,
+               double* residual, Gradient* by) const {
+    *residual = 0.0;
     if (by != nullptr) by->SetZero();
     const Eigen::Vector3d Rs = R * s_i;
     Eigen::Vector3d b = Rs + t - s_j;
@@ -170,7 +173,7 @@ class EpipolarCost final : public ceres::CostFunction {
     const double terms = s_i.stableNorm() + t.stableNorm() + s_j.stableNorm();
     if (!(baseline > kRounding * terms) || !(baseline >= std::numeric_limits<double>::min()) ||
         !std::isfinite(baseline)) {
-      return 0.0;  // E = 0
+      return false;
     }
     b /= baseline;  // which does not change the residual
 
@@ -183,10 +186,11 @@ class EpipolarCost final : public ceres::CostFunction {
     h_i << per_pixel_i_.cwiseProduct(h_i.head<2>()), 0.0;
     h_j << per_pixel_j_.cwiseProduct(h_j.head<2>()), 0.0;
     const double gradient2 = h_i.squaredNorm() + h_j.squaredNorm();
-    if (!(gradient2 > gradient2_rounding_) || !std::isfinite(gradient2)) return 0.0;  // an epipole
+    if (!(gradient2 > gradient2_rounding_) || !std::isfinite(gradient2)) return true;  // an epipole
     const double C = z.dot(b_y);
     const double weight = weight_ / std::sqrt(gradient2);
-    if (by == nullptr) return weight * C;
+    *residual = weight * C;
+    if (by == nullptr) return true;
 
     h_i.head<2>() = per_pixel_i_.cwiseProduct(h_i.head<2>()).eval();
     h_j.head<2>() = per_pixel_j_.cwiseProduct(h_j.head<2>()).eval();
@@ -204,7 +208,7 @@ class EpipolarCost final : public ceres::CostFunction {
     by->Q_i = R.transpose() * turn_i;
     by->s_i = R.transpose() * by->t;
     by->s_j = -by->t;
-    return weight * C;
+    return true;
   }
 
   const MotionBlocks motion_;

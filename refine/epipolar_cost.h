@@ -26,10 +26,14 @@
 // normalized one (it is orthogonal to q). Give the block ceres::QuaternionManifold (kCeres) or
 // ceres::EigenQuaternionManifold (kEigen) all the same.
 //
-// Defined as zero with a zero Jacobian, as in Refine(): at E = 0 (the two cameras in one place, for
-// an intra-camera match the zero motion) and at an epipole (the gradient vanishes), both up to
-// rounding. So two equal poses are a stationary point of their intra-camera matches: start from a
-// motion in roughly the right direction, such as EstimateMotion()'s. The error is the same for t
+// Defined as zero with a zero Jacobian, as in Refine(), at an epipole (the gradient vanishes up to
+// rounding). At E = 0 (the two cameras in one place up to rounding, for an intra-camera match the
+// zero motion) there is no residual: it depends on the direction in which they part. Evaluate()
+// returns false there, so that a problem that starts with two equal poses ends as a failure, and
+// not as converged where it stands. Start from a motion in roughly the right direction and of
+// roughly the right length, such as EstimateMotion()'s. Poses that are nearly equal are as bad: the
+// derivative by t grows as 1 / |b|, steps are as small as |b|, and Ceres may call that converged.
+// The error is the same for t
 // and -t where scale is not observable; where it is, a start of the wrong sign mostly comes back,
 // but may end in a false minimum near t = 0. Intra-camera matches alone hardly determine the length
 // of t_21 (docs/conventions.md): hold it by other residuals or by a manifold.
@@ -40,7 +44,7 @@
 // (Rig::IsValid), the match names a camera that is not there, a pixel is not finite or `order` is
 // not a value of its enum; ceres::Problem::AddResidualBlock aborts on null, so test for it.
 // Evaluate() returns false if a parameter is not finite or a quaternion is zero (a squared norm
-// that underflows or overflows counts as such), and for nothing else.
+// that underflows or overflows counts as such), at E = 0, and for nothing else.
 //
 // Ownership is the caller's, who hands it to the ceres::Problem, as with all of Ceres' cost
 // functions. Rig and match are copied: they need not outlive the cost. A cost is immutable: it may

@@ -1,14 +1,22 @@
 #include "rigel/refine/estimate_motion.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "rigel/core/body_axes.h"
+#include "rigel/core/pixel_unit.h"
+#include "rigel/core/rig_centre.h"
 #include "rigel/minimal/alignment.h"
 #include "rigel/minimal/grouped_matches.h"
+#include "rigel/minimal/two_point_ackermann.h"
 #include "rigel/refine/chance.h"
 #include "rigel/refine/motion_search.h"
+#include "rigel/refine/rig_doubts.h"
 
 namespace rigel {
 namespace {
@@ -23,6 +31,17 @@ MotionEstimate Refused(EstimateStatus status, const std::string& message) {
   estimate.status = status;
   estimate.message = message;
   return estimate;
+}
+
+// Ackermann motion has a front: that of the rig where the prior states none.
+MotionPrior WithForward(const FramePair& pair) {
+  MotionPrior prior = pair.prior;
+  BodyAxes axes;
+  std::string error;
+  if (!prior.forward && ResolveBodyAxes(pair.rig, {}, {}, &axes, &error)) {
+    prior.forward = axes.forward;
+  }
+  return prior;
 }
 
 }  // namespace
@@ -55,14 +74,18 @@ bool EstimateOptions::IsValid(std::string* error) const {
   RefineOptions refined = refine;
   // "auto" may find a prior of any kind.
   refined.prior_kind = solver == kAutoSolver ? PriorKind::kVertical : FindSolver(solver)->prior;
-  return ransac.IsValid(error) && (!refine_motion || refined.IsValid(error));
+  return ransac.IsValid(error) && (!refine_motion || refined.IsValid(error)) &&
+         IsValidTimeLimit(time_limit, error);
 }
 
-MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& pair) {
+MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pair) {
+  Stop stop(given.time_limit, given.cancel);
   std::string error;
-  if (!options.IsValid(&error) || !pair.IsValid(&error)) {
+  if (!given.IsValid(&error) || !pair.IsValid(&error)) {
     return Refused(EstimateStatus::kInvalidInput, error);
   }
+  EstimateOptions options = given;
+  options.ransac.threshold_px = ThresholdPx(given.ransac.threshold_px, pair.rig);
   const double distance = pair.prior.distance.value_or(0.0);
   if (options.refine_motion && options.refine.scale == ScaleMode::kFixed &&
       !(distance > 0 && std::isfinite(distance))) {
@@ -83,21 +106,33 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
                          RefineFormName(options.refine.form) + "' to hold");
     }
   }
+  const MotionPrior prior = WithForward(pair);
   for (const SolverInfo* solver : solvers) {
     Alignment alignment;
-    if (!MakeAlignment(pair.prior, solver->prior, &alignment, &error)) {
+    if (!MakeAlignment(prior, solver->prior, &alignment, &error)) {
       return Refused(EstimateStatus::kInvalidInput, options.solver + ": " + error);
     }
   }
 
   const auto ransac_start = std::chrono::steady_clock::now();
-  const GroupedMatches matches(pair.rig, pair.matches);
-  MotionSearch search = SearchMotion(solvers, pair.prior, matches, options.ransac);
+  // Of the motion of the rig's centre; the body's is made of it in the end. The Ackermann model is
+  // of the body's origin.
+  const bool ackermann = solvers[0]->solve == &Solve2ptAckermann;
+  const Eigen::Vector3d centre =
+      ackermann ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : RigCentre(pair.rig);
+  const GroupedMatches matches(WithOrigin(pair.rig, centre), pair.matches);
+  MotionSearch search = SearchMotion(solvers, prior, matches, options.ransac, &stop);
+  // The loop knows how many of those that it scored.
+  if (search.best.found && matches.size() > options.ransac.max_scored) {
+    matches.ScoreInFront(search.best.best, options.ransac.threshold_px,
+                         std::numeric_limits<double>::infinity(), &search.best.num_inliers);
+  }
   MotionEstimate estimate;
   estimate.iterations = search.iterations;
   estimate.hypotheses = search.hypotheses;
   estimate.trials = std::move(search.trials);
   estimate.ransac_ms = MillisecondsSince(ransac_start);
+  estimate.stopped = stop.reason();
   if (search.solver == nullptr) {
     estimate.status = matches.size() < solvers[0]->sample_size ? EstimateStatus::kTooFewMatches
                                                                : EstimateStatus::kNoSolution;
@@ -108,34 +143,46 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
   const RansacResult<Solution>& ransac = search.best;
   if (!ransac.found) {
     estimate.status = EstimateStatus::kNoSolution;
-    estimate.message = "no sample of the matches determines a motion";
+    estimate.message = estimate.stopped != StopReason::kNone
+                           ? stop.Message() + " before a motion was found"
+                           : "no sample of the matches determines a motion";
     return estimate;
   }
   estimate.raw = ransac.best_minimal;
-  estimate.pose = ransac.best;
+  estimate.raw.t = MotionOfBody(ransac.best_minimal, centre).t;
+  estimate.pose = MotionOfBody(ransac.best, centre);
   estimate.num_inliers = ransac.num_inliers;
   estimate.status = EstimateStatus::kSuccess;
-  estimate.message = "ok";
+  estimate.message = estimate.stopped != StopReason::kNone ? stop.Message() : "ok";
   if (options.refine_motion) {
     const auto refine_start = std::chrono::steady_clock::now();
     RefineOptions refine = options.refine;
     refine.prior_kind = search.solver->prior;
     refine.threshold_px = options.ransac.threshold_px;
     refine.num_tries = static_cast<double>(search.hypotheses);
-    estimate.refine = Refine(refine, matches, pair.prior, &estimate.pose);
+    const std::optional<double> left = stop.SecondsLeft();
+    if (left) refine.time_limit = std::min(*left, refine.time_limit.value_or(*left));
+    if (refine.cancel == nullptr) refine.cancel = options.cancel;
+    estimate.refine = RefineAbout(refine, matches, centre, pair.prior, &estimate.pose);
     estimate.refine_ms = MillisecondsSince(refine_start);
     if (estimate.refine.IsSolutionUsable()) {
       estimate.num_inliers = estimate.refine.num_inliers;
+      if (estimate.refine.stopped != StopReason::kNone) {
+        estimate.stopped = estimate.refine.stopped;
+        // Refine() knows of no more than what was left of the limit.
+        estimate.message = stop.Asked() ? stop.Message() : estimate.refine.message;
+      }
     } else {
       estimate.status = EstimateStatus::kNotRefined;
       estimate.message = "not refined: " + estimate.refine.message;
     }
   }
   estimate.inlier_ratio = estimate.num_inliers / static_cast<double>(matches.size());
+  const Pose about_centre = MotionOfPoint(estimate.pose, centre);
   const bool exceeds_chance =
       estimate.refine.IsSolutionUsable()
           ? estimate.refine.exceeds_chance
-          : ExceedsChance(matches, estimate.num_inliers, options.ransac.threshold_px,
+          : ExceedsChance(matches, about_centre, estimate.num_inliers, options.ransac.threshold_px,
                           static_cast<double>(search.hypotheses));
   if (!exceeds_chance) {
     estimate.status = EstimateStatus::kNoConsensus;
@@ -145,9 +192,15 @@ MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& p
     return estimate;
   }
   const Doubt doubt =
-      FindDoubt(pair.prior, *search.solver, estimate.pose, matches, options.ransac.threshold_px);
+      FindDoubt(pair.prior, *search.solver, about_centre, matches, options.ransac.threshold_px);
   estimate.doubtful = doubt.Any();
   estimate.doubt = doubt.Reason();
+  if (estimate.status == EstimateStatus::kSuccess && options.refine_motion && options.check_rig &&
+      estimate.stopped == StopReason::kNone) {
+    EstimateOptions again = given;
+    again.time_limit = stop.SecondsLeft();
+    estimate.rig_doubts = FindRigDoubts(again, pair, estimate);
+  }
   return estimate;
 }
 

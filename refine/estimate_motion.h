@@ -2,11 +2,14 @@
 #ifndef RIGEL_REFINE_ESTIMATE_MOTION_H_
 #define RIGEL_REFINE_ESTIMATE_MOTION_H_
 
+#include <atomic>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "rigel/core/frame_pair.h"
+#include "rigel/core/stop.h"
 #include "rigel/minimal/catalogue.h"
 #include "rigel/minimal/ransac.h"
 #include "rigel/minimal/solutions.h"
@@ -27,6 +30,16 @@ struct EstimateOptions {
   // The solver's prior replaces refine.prior_kind; refine.threshold_px is taken from ransac.
   RefineOptions refine;
 
+  // Seconds from the call on, >= 0: after them the result is the best motion found by then, see
+  // MotionEstimate::stopped. What prepares the matches and a step in progress are not cut short.
+  std::optional<double> time_limit;
+  // Ends the call likewise once it is true; any thread may set it. Null, or outlives the call.
+  const std::atomic<bool>* cancel = nullptr;
+
+  // Looks for what contradicts the rig (MotionEstimate::rig_doubts). Takes time where something
+  // does: a second estimate or a few.
+  bool check_rig = true;
+
   bool IsValid(std::string* error) const;
 };
 
@@ -42,6 +55,20 @@ enum class EstimateStatus {
 
 const char* EstimateStatusName(EstimateStatus status);
 
+enum class RigDoubtKind {
+  kFrozen,   // camera1 shows the same image twice
+  kFewFit,   // few of the matches between camera1 and camera2 fit
+  kSwapped,  // more would fit if the two were swapped
+};
+
+// What in a pair contradicts its rig, for a person to look into (rig_doubts.h).
+struct RigDoubt {
+  RigDoubtKind kind = RigDoubtKind::kFewFit;
+  int camera1 = 0;  // at most camera2
+  int camera2 = 0;
+  std::string message;  // "cameras 0-1: 12 of 760 fit; are they swapped, ..."
+};
+
 struct MotionEstimate {
   EstimateStatus status = EstimateStatus::kNotRun;
   std::string message = "EstimateMotion was not called.";
@@ -56,9 +83,13 @@ struct MotionEstimate {
   double ransac_ms = 0.0;
   double refine_ms = 0.0;
   RefineSummary refine;
+  // What ended the call early; message says it too. The motion, if there is one, is the best found
+  // by then, and refine states no uncertainty unless it was done.
+  StopReason stopped = StopReason::kNone;
   // Something speaks against the motion, as where the prior is wrong: see Doubt.
   bool doubtful = false;
   std::string doubt;  // what; empty if nothing does
+  std::vector<RigDoubt> rig_doubts;  // of a refined motion; the estimate is as without them
 
   bool HasMotion() const {
     return status == EstimateStatus::kSuccess || status == EstimateStatus::kNotRefined;
@@ -66,7 +97,7 @@ struct MotionEstimate {
 };
 
 // Never throws, exits or logs on what `pair` or `options` hold. Thread-safe; the same input and
-// seed give the same result.
+// seed give the same result, unless a time limit or a cancel ended the search.
 MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& pair);
 
 }  // namespace rigel

@@ -19,8 +19,11 @@ FramePairSolver::FramePairSolver(const SolverInfo& solver, const GroupedMatches&
                                  const Alignment& alignment, const RansacOptions& options)
     : solver_(solver),
       matches_(matches),
+      scored_subset_(matches.size() > options.max_scored ? matches.DrawnSubset(options.max_scored)
+                                                         : GroupedMatches()),
+      scored_(scored_subset_.size() > 0 ? scored_subset_ : matches_),
       subset_(matches.EvenSubset(kSubset)),
-      drawn_subset_(matches.DrawnSubset(kSubset)),
+      drawn_subset_(scored_.DrawnSubset(kSubset)),
       sign_subset_(matches.EvenSubset(kSignSubset)),
       prepared_(PreparedMatches::OnDemand(matches, alignment)),
       sampler_(matches, solver.sampling, solver.sample_size, options.max_iterations,
@@ -46,13 +49,20 @@ bool FramePairSolver::Draw(Random* random, int* sample) const {
   return true;
 }
 
+double FramePairSolver::Work(int num_solutions) const {
+  constexpr double kSample = 1.0, kSolution = 0.3, kGroup = 0.05, kMatch = 0.0025;
+  return kSample + solver_.nominal_us +
+         num_solutions * (kSolution + kGroup * static_cast<double>(scored_.groups().size()) +
+                          kMatch * scored_.size());
+}
+
 // The sum over the subset is too far above its expectation for a score of `best`. Terms are
 // between 0 and t^2: of all sets of so many with this mean those of zeros and t^2 alone scatter
 // most, hypergeometrically, and where few are t^2 with a longer tail than a normal one.
 bool FramePairSolver::BailsOut(const Model& model, double best) const {
   constexpr double kDeviations = 3.0;
   constexpr double kTerms = 2.0;
-  const double n = matches_.size(), m = drawn_subset_.size();
+  const double n = scored_.size(), m = drawn_subset_.size();
   if (n < 2.0 * m) return false;
   const double t2 = threshold_px_ * threshold_px_;
   const double p = std::min(best / (n * t2), 1.0);

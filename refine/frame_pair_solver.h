@@ -32,20 +32,21 @@ class FramePairSolver {
   // False if the matches allow no sample of the solver's kind.
   bool CanDraw() const { return sampler_.CanDraw(); }
 
-  int num_data() const { return matches_.size(); }
+  int num_data() const { return scored_.size(); }
   int sample_size() const { return solver_.sample_size; }
   bool Draw(Random* random, int* sample) const;
   int MinimalSolver(const int* sample, Solutions* solutions) const {
     prepared_.Prepare(sample, solver_.sample_size);
     return solver_.solve(prepared_, sample, solutions);
   }
+  double Work(int num_solutions) const;
   // Does not look at depths, which only add to the score; the sign of t matters little to it.
   double QuickScore(const Model& model, double bound) const {
-    return matches_.Score(model, threshold_px_, bound, nullptr, Loss());
+    return scored_.Score(model, threshold_px_, bound, nullptr, Loss());
   }
   bool BailsOut(const Model& model, double best) const;
   double Score(const Model& model, double bound, int* inliers) const {
-    return matches_.ScoreInFront(model, threshold_px_, bound, inliers, Loss());
+    return scored_.ScoreInFront(model, threshold_px_, bound, inliers, Loss());
   }
   bool Admit(Model* model) const;
   bool Similar(const Model& a, const Model& b) const;
@@ -70,6 +71,8 @@ class FramePairSolver {
 
   const SolverInfo& solver_;
   const GroupedMatches& matches_;
+  GroupedMatches scored_subset_;  // empty if all are scored
+  const GroupedMatches& scored_;
   GroupedMatches subset_;
   GroupedMatches drawn_subset_;
   GroupedMatches sign_subset_;

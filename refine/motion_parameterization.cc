@@ -111,9 +111,9 @@ bool MotionParameterization::Set(RotationForm rotation, TranslationForm translat
 }
 
 // d t / d(l1, l2) of the reference.
-Eigen::Matrix<double, 3, 2> MotionParameterization::DepthDirections(
+Matrix3x2d MotionParameterization::DepthDirections(
     const Eigen::Matrix3d& R) const {
-  Eigen::Matrix<double, 3, 2> directions;
+  Matrix3x2d directions;
   directions << -(R * reference_.ray1.x), reference_.ray2.x;
   return directions;
 }

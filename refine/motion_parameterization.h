@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "rigel/core/eigen_types.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/rays.h"
 #include "rigel/minimal/alignment.h"
@@ -16,7 +17,7 @@ namespace rigel {
 
 // d(d, e) / d(parameters): 6 rows (rotation in radians, then translation in metres), one column a
 // parameter.
-using MotionBasis = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+using MotionBasis = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::DontAlign, 6, 6>;
 
 enum class RotationForm {
   kFree,   // R = Exp(w) R0: 3 parameters
@@ -57,7 +58,7 @@ class MotionParameterization {
   void Evaluate(const double* parameters, Pose* pose, MotionBasis* basis) const;
 
  private:
-  Eigen::Matrix<double, 3, 2> DepthDirections(const Eigen::Matrix3d& R) const;
+  Matrix3x2d DepthDirections(const Eigen::Matrix3d& R) const;
 
   RotationForm rotation_ = RotationForm::kFree;
   TranslationForm translation_ = TranslationForm::kFree;
@@ -70,14 +71,14 @@ class MotionParameterization {
   // start + tangent.
   double norm_ = 0.0;
   Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix<double, 3, 2> tangent_ = Eigen::Matrix<double, 3, 2>::Zero();
+  Matrix3x2d tangent_ = Matrix3x2d::Zero();
   // Depth forms: (l1, l2) = start_depths_ + depth_basis_ parameters, and where |t| is norm_, plus
   // the multiple of across_ that makes it so.
   RayPair reference_;
-  Eigen::Vector2d start_depths_ = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d depth_basis_ = Eigen::Matrix2d::Zero();
+  UnalignedMatrix<2> start_depths_ = UnalignedMatrix<2>::Zero();
+  UnalignedMatrix<2, 2> depth_basis_ = UnalignedMatrix<2, 2>::Zero();
   bool holds_norm_ = false;
-  Eigen::Vector2d across_ = Eigen::Vector2d::Zero();
+  UnalignedMatrix<2> across_ = UnalignedMatrix<2>::Zero();
 };
 
 }  // namespace rigel

@@ -15,10 +15,10 @@ namespace {
 class Attempt {
  public:
   Attempt(const SolverInfo& solver, const Alignment& alignment, const GroupedMatches& matches,
-          const RansacOptions& options, Solutions* solutions)
+          const RansacOptions& options, Solutions* solutions, Stop* stop)
       : solver_(solver),
         problem_(solver, matches, alignment, options),
-        run_(problem_, options, solutions) {}
+        run_(problem_, options, solutions, stop) {}
 
   const SolverInfo& solver() const { return solver_; }
   bool NeedsPrior() const { return solver_.prior != PriorKind::kNone; }
@@ -72,11 +72,12 @@ constexpr double kEnoughCoverage = 0.5;
 class Search {
  public:
   Search(const std::vector<const SolverInfo*>& solvers, const MotionPrior& prior,
-         const GroupedMatches& matches, const RansacOptions& options)
+         const GroupedMatches& matches, const RansacOptions& options, Stop* stop)
       : solvers_(solvers),
         prior_(prior),
         matches_(matches),
         options_(options),
+        stop_(stop),
         budget_(options.max_iterations) {}
 
   MotionSearch Run() {
@@ -102,7 +103,8 @@ class Search {
     }
     Alignment alignment;
     if (!MakeAlignment(prior_, solver.prior, &alignment, &trials_[k].note)) return false;
-    attempts_[k] = std::make_unique<Attempt>(solver, alignment, matches_, options_, &solutions_);
+    attempts_[k] =
+        std::make_unique<Attempt>(solver, alignment, matches_, options_, &solutions_, stop_);
     if (attempts_[k]->CanDraw()) return true;
     attempts_[k].reset();
     trials_[k].note = WhyNoSample(solver);
@@ -181,7 +183,7 @@ class Search {
       if (!attempts_[k]->NeedsPrior() || static_cast<int>(k) == constrained) live.push_back(k);
     }
     bool decided = Decides(Best());
-    for (bool goes_on = true; goes_on && !decided && budget_ > 0;) {
+    for (bool goes_on = true; goes_on && !decided && budget_ > 0 && !Exhausted();) {
       goes_on = false;
       for (const size_t k : live) {
         Attempt& attempt = *attempts_[k];
@@ -194,6 +196,15 @@ class Search {
       }
     }
     for (const size_t k : live) attempts_[k]->Settle();
+  }
+
+  // The work of all is used up, or the search was stopped.
+  bool Exhausted() const {
+    double work_us = 0.0;
+    for (const auto& attempt : attempts_) {
+      if (attempt != nullptr) work_us += attempt->result().work_us;
+    }
+    return !(work_us < options_.max_work_us) || stop_->Asked();
   }
 
   // Nothing better is to be expected of the others.
@@ -236,6 +247,7 @@ class Search {
   const MotionPrior& prior_;
   const GroupedMatches& matches_;
   const RansacOptions& options_;
+  Stop* stop_;
   Solutions solutions_;
   std::vector<std::unique_ptr<Attempt>> attempts_;  // of the solvers; null: not begun
   std::vector<SolverTrial> trials_;
@@ -245,8 +257,8 @@ class Search {
 }  // namespace
 
 MotionSearch SearchMotion(const std::vector<const SolverInfo*>& solvers, const MotionPrior& prior,
-                          const GroupedMatches& matches, const RansacOptions& options) {
-  return Search(solvers, prior, matches, options).Run();
+                          const GroupedMatches& matches, const RansacOptions& options, Stop* stop) {
+  return Search(solvers, prior, matches, options, stop).Run();
 }
 
 }  // namespace rigel

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rigel/core/prior.h"
+#include "rigel/core/stop.h"
 #include "rigel/minimal/catalogue.h"
 #include "rigel/minimal/grouped_matches.h"
 #include "rigel/minimal/ransac.h"
@@ -29,10 +30,10 @@ struct MotionSearch {
 // prior go on in turns, until the one that leads has drawn a sample of inliers with the confidence
 // asked for and nothing but many outliers speaks against its motion. Those after 5pt+1 are for rigs
 // most of whose matches are of camera pairs that have no five. All together make
-// options.max_iterations at most.
+// options.max_iterations and options.max_work_us at most. `stop` is asked before each iteration.
 inline constexpr int kProbeIterations = 100;
 MotionSearch SearchMotion(const std::vector<const SolverInfo*>& solvers, const MotionPrior& prior,
-                          const GroupedMatches& matches, const RansacOptions& options);
+                          const GroupedMatches& matches, const RansacOptions& options, Stop* stop);
 
 }  // namespace rigel
 

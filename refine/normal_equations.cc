@@ -59,7 +59,7 @@ void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatche
 }
 
 void Leverages(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
-               const double* weights, const Eigen::Matrix<double, 6, 6>& covariance,
+               const double* weights, const Matrix6d& covariance,
                double* leverages) {
   FundamentalDerivatives D;
   const RowMajor3d F = Differentiate(matches, group, pose, &D);

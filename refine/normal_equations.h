@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "rigel/core/eigen_types.h"
 #include "rigel/core/pose.h"
 #include "rigel/minimal/grouped_matches.h"
 #include "rigel/refine/sampson_kernel.h"
@@ -13,8 +14,8 @@ namespace rigel {
 // By the perturbation R <- Exp(w) R, t <- t + e: w (radians), then e (metres).
 struct MotionNormalEquations {
   double cost = 0.0;
-  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
-  Eigen::Matrix<double, 6, 6> curvature = Eigen::Matrix<double, 6, 6>::Zero();
+  Vector6d gradient = Vector6d::Zero();
+  Matrix6d curvature = Matrix6d::Zero();
 };
 
 // Adds what SumSampson() gives at `pose` for `pixels` and their weights: matches of the group, or
@@ -28,7 +29,7 @@ void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatche
 // is the leverage of a match that is one of them: 0 to 1, over all matches the number of
 // parameters.
 void Leverages(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
-               const double* weights, const Eigen::Matrix<double, 6, 6>& covariance,
+               const double* weights, const Matrix6d& covariance,
                double* leverages);
 
 }  // namespace rigel

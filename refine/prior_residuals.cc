@@ -20,24 +20,24 @@ PriorResiduals::PriorResiduals(const MotionPrior& prior, PriorKind kind, const P
       return;
     case PriorKind::kVertical:
       if (!prior.gravity_sigma) return;
-      from_ = *prior.gravity1;
-      to_ = *prior.gravity2;
+      from_ = prior.gravity1->normalized();
+      to_ = prior.gravity2->normalized();
       weight_ = 1.0 / (std::sqrt(2.0) * *prior.gravity_sigma);
       break;
     case PriorKind::kAxis:
       if (!prior.axis_sigma) return;
-      from_ = to_ = *prior.axis;
+      from_ = to_ = prior.axis->normalized();
       weight_ = 1.0 / (chord * *prior.axis_sigma);
       break;
     case PriorKind::kPlanar:
       if (!prior.normal_sigma) return;
-      from_ = to_ = *prior.normal;
+      from_ = to_ = prior.normal->normalized();
       weight_ = 1.0 / (chord * *prior.normal_sigma);
       with_normal_ = start.t.norm() > 0;
       if (with_normal_) translation_weight_ = 1.0 / (start.t.norm() * *prior.normal_sigma);
       break;
   }
-  across_ = TangentBasis(to_.normalized());
+  across_ = TangentBasis(to_);
   num_direction_ = with_normal_ ? 3 : 2;
   size_ += num_direction_;
 }

@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "rigel/core/eigen_types.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/prior.h"
 
@@ -23,8 +24,8 @@ inline constexpr int kMaxPriorResiduals = 4;
 class PriorResiduals {
  public:
   using Residuals =
-      Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxPriorResiduals, 1>;
-  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, kMaxPriorResiduals, 6>;
+      Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMaxPriorResiduals, 1>;
+  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::DontAlign, kMaxPriorResiduals, 6>;
 
   PriorResiduals() = default;
   // The weights of axis and normal depend on the angle and |t| of `start` and stay fixed.
@@ -46,7 +47,7 @@ class PriorResiduals {
   double distance_weight_ = 0.0;
   Eigen::Vector3d from_ = Eigen::Vector3d::Zero();  // R from_ = to_
   Eigen::Vector3d to_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix<double, 3, 2> across_ = Eigen::Matrix<double, 3, 2>::Zero();
+  Matrix3x2d across_ = Matrix3x2d::Zero();
   double weight_ = 0.0;
   double translation_weight_ = 0.0;
 };

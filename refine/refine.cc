@@ -10,7 +10,9 @@
 #include "rigel/core/angles.h"
 #include "rigel/core/frame_pair.h"
 #include "rigel/core/median.h"
+#include "rigel/core/pixel_unit.h"
 #include "rigel/core/rays.h"
+#include "rigel/core/rig_centre.h"
 #include "rigel/minimal/alignment.h"
 #include "rigel/refine/ceres_engine.h"
 #include "rigel/refine/chance.h"
@@ -25,33 +27,32 @@
 namespace rigel {
 namespace {
 
-bool CanBeWeighed(const MotionPrior& prior, PriorKind kind, std::string* error) {
-  const auto positive = [](const std::optional<double>& sigma) {
-    return !sigma.has_value() || (*sigma > 0 && std::isfinite(*sigma));
-  };
-  if (!positive(prior.gravity_sigma) || !positive(prior.axis_sigma) ||
-      !positive(prior.normal_sigma) || !(prior.distance_sigma >= 0) ||
-      !std::isfinite(prior.distance_sigma)) {
-    *error = "a sigma of the prior is not positive and finite";
-    return false;
-  }
-  const double distance = prior.distance.value_or(0.0);
-  if (!(distance >= 0) || !std::isfinite(distance)) {
-    *error = "the prior's distance is negative or not finite";
-    return false;
-  }
-  Alignment alignment;
-  return !HasPrior(prior, kind) || MakeAlignment(prior, kind, &alignment, error);
+bool WeighsDistance(const RefineOptions& options, const MotionPrior& prior) {
+  return options.use_prior && prior.distance.has_value() && prior.distance_sigma > 0;
 }
 
+// |t| of the body enters the fit, which is then one of the body's motion.
+bool UsesBodyLength(const RefineOptions& options, const MotionPrior& prior) {
+  return options.scale == ScaleMode::kFixed || WeighsDistance(options, prior);
+}
+
+// Poses are motions of `point`, which is the origin of the rig of `matches`; the summary is of the
+// body.
 class Refiner {
  public:
-  Refiner(const RefineOptions& options, const GroupedMatches& matches, const MotionPrior& prior)
+  Refiner(const RefineOptions& options, const GroupedMatches& matches, const Eigen::Vector3d& point,
+          const MotionPrior& prior)
       : options_(options),
         matches_(matches),
+        point_(point),
         prior_(prior),
+        pixel_unit_(PixelUnit(matches.rig())),
         sign_subset_(matches.EvenSubset(kSignSubset)),
-        engine_(matches) {}
+        engine_(matches),
+        stop_(options.time_limit, options.cancel),
+        progress_([this](int iteration, double cost) {
+          options_.progress({summary_.num_rounds + 1, iteration, cost});
+        }) {}
 
   RefineSummary Run(Pose* pose);
 
@@ -75,9 +76,6 @@ class Refiner {
   void ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotation,
                    TranslationForm* translation) const;
   void TakeDistance(Pose* pose) const;
-  bool WeighsDistance() const {
-    return options_.use_prior && prior_.distance.has_value() && prior_.distance_sigma > 0;
-  }
   bool HasReference() const {
     return options_.form == RefineForm::kDepths || options_.form == RefineForm::kPriorDepths;
   }
@@ -85,13 +83,18 @@ class Refiner {
   bool Solve(bool scale_free, Pose* pose);
   bool Iterate(Pose* pose);
   void FillUncertainty(const Pose& pose);
+  void CountCameraPairs(const Pose& pose);
   bool Fail(Termination termination, const std::string& message);
 
   const RefineOptions& options_;
   const GroupedMatches& matches_;
+  const Eigen::Vector3d point_;
   const MotionPrior& prior_;
+  const double pixel_unit_;
   const GroupedMatches sign_subset_;
   SmallEngine engine_;
+  Stop stop_;
+  const std::function<void(int, double)> progress_;  // options_.progress of the round
   Alignment alignment_;
   std::vector<double> squared_errors_;
   std::vector<char> mask_, previous_mask_;  // grouped order
@@ -151,7 +154,8 @@ double Refiner::MedianResidual() const {
 void Refiner::SetNoise() {
   noise_weights_.assign(mask_.size(), 1.0);
   // The floor keeps noise-free problems regular.
-  noise_px_ = std::max(options_.noise_px.has_value() ? *options_.noise_px : EstimateNoise(), 1e-9);
+  noise_px_ = std::max(options_.noise_px.has_value() ? *options_.noise_px : EstimateNoise(),
+                       1e-9 * pixel_unit_);
   match_weights_.resize(mask_.size());
   for (size_t k = 0; k < mask_.size(); ++k) match_weights_[k] = mask_[k] * noise_weights_[k];
   summary_.noise_px = noise_px_;
@@ -216,7 +220,7 @@ bool Refiner::ScaleIsFree(const Pose& pose) const {
 // At the false minima of intra-camera matches the scale looks well determined, so that their kind
 // decides and not the information there.
 bool Refiner::SearchesScale(const Pose& pose) const {
-  if (options_.scale != ScaleMode::kAuto || WeighsDistance()) return false;
+  if (options_.scale != ScaleMode::kAuto || WeighsDistance(options_, prior_)) return false;
   const bool all_intra =
       std::all_of(matches_.groups().begin(), matches_.groups().end(),
                   [](const MatchGroup& group) { return group.camera1 == group.camera2; });
@@ -246,10 +250,11 @@ void Refiner::ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotat
   }
 }
 
-// A distance of zero leaves no direction to refine: the start's |t| is kept.
+// A distance of zero leaves no direction to refine: the start's |t| is kept. What the matches know
+// is the direction of the rig's own motion, whatever the start's |t| is.
 void Refiner::TakeDistance(Pose* pose) const {
-  const double norm = pose->t.norm();
-  if (norm > 0 && prior_.distance.value_or(0.0) > 0) pose->t *= *prior_.distance / norm;
+  if (!(prior_.distance.value_or(0.0) > 0)) return;
+  *pose = WithBodyLength(*pose, RigCentre(matches_.rig()), *prior_.distance);
 }
 
 // Taking a match as exact hurts least with much parallax, since its rays then say most of l1, l2,
@@ -259,7 +264,7 @@ int Refiner::ChooseReference(const Pose& pose, RotationForm rotation,
                              TranslationForm translation) const {
   constexpr size_t kMaxCandidates = 16;
   constexpr double kMinParallax = 1e-6;
-  const double limit = std::max(MedianResidual(), 1e-9);
+  const double limit = std::max(MedianResidual(), 1e-9 * pixel_unit_);
   std::vector<std::pair<double, int>> candidates;  // parallax, match
   for (int k = 0; k < matches_.size(); ++k) {
     if (!mask_[k] || squared_errors_[k] > limit * limit) continue;
@@ -317,6 +322,7 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
                      options_.form != RefineForm::kBundle;
   std::array<double, 6> parameters = {0, 0, 0, 0, 0, 0};
   LeastSquaresSummary result;
+  const auto* progress = options_.progress ? &progress_ : nullptr;
   if (small) {
     SmallEngineOptions engine_options;
     engine_options.loss = options_.loss;
@@ -324,11 +330,13 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
     engine_options.max_num_iterations = options_.max_num_iterations;
     // The last step is some 1e-5 standard deviations long.
     engine_options.tolerance = 1e-12;
+    engine_options.stop = &stop_;
+    engine_options.progress = progress;
     result = engine_.Solve(engine_options, parameterization, weights_, prior, noise_px_,
                            parameters.data());
   } else {
     result = SolveWithCeres(options_, matches_, parameterization, weights_, prior, noise_px_, *pose,
-                            parameters.data());
+                            &stop_, progress, parameters.data());
   }
   Pose refined;
   parameterization.Evaluate(parameters.data(), &refined, nullptr);
@@ -404,6 +412,7 @@ bool Refiner::Iterate(Pose* pose) {
     scale_free_ = ScaleIsFree(*pose);
     if (!Solve(scale_free_, pose)) return false;
     ++summary_.num_rounds;
+    if (stop_.Asked()) break;
     const bool reselected = SelectInliers(*pose);
     SetNoise();
     const bool reweighted = SetWeights(*pose);
@@ -419,35 +428,43 @@ void Refiner::FillUncertainty(const Pose& pose) {
           : Information(pose);
   summary_.scale_free = scale_free_;
   summary_.relative_scale_sigma = ScaleSigma(pose);
+  summary_.fitted_point = point_;
+  const Pose body = MotionOfBody(pose, point_);
+  const Matrix6d to_body = BodyFromPointJacobian(pose.R, point_);
   const auto set_covariance = [&](const MotionBasis& basis) {
     Matrix6d covariance;
     if (!CovarianceOfBasis(information, basis, &covariance)) return;
-    summary_.covariance = covariance;
     summary_.rotation_sigma = RotationSigma(covariance);
-    summary_.direction_sigma = DirectionSigma(covariance, pose.t);
+    summary_.rig_direction_sigma = DirectionSigma(covariance, pose.t);
+    summary_.covariance = Matrix6d(to_body * covariance * to_body.transpose());
+    summary_.direction_sigma = DirectionSigma(*summary_.covariance, body.t);
   };
   set_covariance(PriorIsExact() ? PriorBasis(pose, alignment_, scale_free_)
                                 : FullBasis(pose, scale_free_));
   summary_.parallax_px = ParallaxPercentilePx(matches_, mask_, pose);
   // A noise level that is given is believed; an estimated one may be a fit to the noise.
   summary_.parallax_limit_px =
-      kParallaxSigmas *
-      (options_.noise_px.has_value() ? noise_px_ : std::max(noise_px_, kMinMatchNoisePx));
-  summary_.translation_observable =
+      kParallaxSigmas * (options_.noise_px.has_value()
+                             ? noise_px_
+                             : std::max(noise_px_, kMinMatchNoisePx * pixel_unit_));
+  summary_.rig_translation_observable =
       summary_.covariance.has_value() &&
-      RadToDeg(summary_.direction_sigma) <= kDirectionObservableDeg &&
+      RadToDeg(summary_.rig_direction_sigma) <= kDirectionObservableDeg &&
       (std::isfinite(summary_.parallax_px) ? summary_.parallax_px > summary_.parallax_limit_px
                                            : summary_.relative_scale_sigma * kParallaxSigmas < 1.0);
-  if (!summary_.translation_observable && !PriorIsExact()) set_covariance(FullBasis(pose, true));
+  summary_.translation_observable = summary_.rig_translation_observable &&
+                                    RadToDeg(summary_.direction_sigma) <= kDirectionObservableDeg;
+  if (!summary_.rig_translation_observable && !PriorIsExact()) {
+    set_covariance(FullBasis(pose, true));
+  }
   if (summary_.covariance) {
-    summary_.weakest_direction = WeakestDirection(*summary_.covariance, pose.t);
+    summary_.weakest_direction = WeakestDirection(*summary_.covariance, body.t);
   }
   summary_.rotation_observable = summary_.covariance.has_value() &&
                                  RadToDeg(summary_.rotation_sigma) <= kRotationObservableDeg;
-  summary_.exceeds_chance =
-      ExceedsChance(matches_, num_inliers_, options_.threshold_px, options_.num_tries);
   if (!summary_.exceeds_chance) {
     summary_.rotation_observable = false;
+    summary_.rig_translation_observable = false;
     summary_.translation_observable = false;
   }
   // With kAuto the scale was left free because it is observable: one decision, not two.
@@ -455,6 +472,22 @@ void Refiner::FillUncertainty(const Pose& pose) {
       summary_.translation_observable &&
       (options_.scale == ScaleMode::kAuto ? scale_free_
                                           : summary_.relative_scale_sigma <= kScaleObservableRatio);
+}
+
+void Refiner::CountCameraPairs(const Pose& pose) {
+  summary_.camera_pairs.clear();
+  for (const MatchGroup& group : matches_.groups()) {
+    CameraPairFit fit;
+    fit.camera1 = group.camera1;
+    fit.camera2 = group.camera2;
+    fit.rows = group.size;
+    for (int k = group.begin; k < group.begin + group.size; ++k) fit.inliers += mask_[k];
+    const std::vector<RigCamera>& cameras = matches_.rig().cameras;
+    const Eigen::Vector3d b = pose.R * cameras[group.camera1].s + pose.t - cameras[group.camera2].s;
+    const double norm = b.norm();
+    if (norm > 0) fit.baseline = {b.x() / norm, b.y() / norm, b.z() / norm};
+    summary_.camera_pairs.push_back(fit);
+  }
 }
 
 RefineSummary Refiner::Run(Pose* pose) {
@@ -478,7 +511,7 @@ RefineSummary Refiner::Run(Pose* pose) {
     Fail(Termination::kFailure, "the start's R is not a rotation");
     return summary_;
   }
-  if (options_.use_prior && !CanBeWeighed(prior_, options_.prior_kind, &error)) {
+  if (options_.use_prior && !prior_.IsValid(&error)) {
     Fail(Termination::kFailure, error);
     return summary_;
   }
@@ -487,19 +520,21 @@ RefineSummary Refiner::Run(Pose* pose) {
   Pose result = *pose;
   ResolveSign(sign_subset_, options_.threshold_px, &result);
   // Matches that hardly determine |t| would not bring it there from afar.
-  if (options_.scale == ScaleMode::kFixed || WeighsDistance()) TakeDistance(&result);
+  if (UsesBodyLength(options_, prior_)) TakeDistance(&result);
   SelectInliers(result);
   SetNoise();
   if (SearchesScale(result)) {
     ResolveSignAndScale(sign_subset_, options_.threshold_px, &result);
   }
-  bool done = Iterate(&result);
-  if (done && SearchesScale(result) && !ScaleIsFree(result) &&
+  bool done = true;
+  const auto go_on = [&] { return done && !stop_.Asked(); };
+  if (go_on()) done = Iterate(&result);
+  if (go_on() && SearchesScale(result) && !ScaleIsFree(result) &&
       SearchScale(matches_, options_.threshold_px, noise_px_, &result)) {
     done = Iterate(&result);
   }
   // A t with another sign or scale is not a minimum: refine again from there.
-  if (done) {
+  if (go_on()) {
     const Eigen::Vector3d t = result.t;
     const bool possible = ResolveSign(sign_subset_, options_.threshold_px, &result);
     if (!possible && SearchesScale(result)) {
@@ -508,21 +543,31 @@ RefineSummary Refiner::Run(Pose* pose) {
     if (result.t != t) done = Iterate(&result);
   }
   // Are there inliers that fit by chance?
-  if (done) {
+  if (go_on()) {
     excludes_chance_ = true;
     selected_at_.reset();
     if (SelectInliers(result)) done = Iterate(&result);
   }
   // What is said of the scale must be said of the final motion.
-  if (done && ScaleIsFree(result) != scale_free_) done = Iterate(&result);
+  if (go_on() && ScaleIsFree(result) != scale_free_) done = Iterate(&result);
+  const bool stopped = done && stop_.reason() != StopReason::kNone;
+  if (stopped) SelectInliers(result);
   summary_.median_residual_px = MedianResidual();
   if (!done) return summary_;
 
-  FillUncertainty(result);
+  summary_.exceeds_chance =
+      ExceedsChance(matches_, pose, num_inliers_, options_.threshold_px, options_.num_tries);
+  CountCameraPairs(result);
+  if (stopped) {
+    summary_.termination = Termination::kStopped;
+    summary_.stopped = stop_.reason();
+  } else {
+    FillUncertainty(result);
+  }
   summary_.num_inliers = num_inliers_;
   summary_.inliers.assign(mask_.size(), 0);
   for (int k = 0; k < matches_.size(); ++k) summary_.inliers[matches_.original(k)] = mask_[k];
-  summary_.message = TerminationName(summary_.termination);
+  summary_.message = stopped ? stop_.Message() : TerminationName(summary_.termination);
   *pose = result;
   return summary_;
 }
@@ -541,8 +586,8 @@ bool RefineOptions::IsValid(std::string* error) const {
     *error = std::string("the form '") + RefineFormName(form) + "' needs a prior_kind";
     return false;
   }
-  if (!(threshold_px > 0) || !std::isfinite(threshold_px)) {
-    *error = "threshold_px must be positive and finite";
+  if (!(threshold_px >= 0) || !std::isfinite(threshold_px)) {
+    *error = "threshold_px must be positive and finite, or 0 for auto";
     return false;
   }
   if (!(loss_scale_sigmas > 0) || !std::isfinite(loss_scale_sigmas)) {
@@ -561,12 +606,38 @@ bool RefineOptions::IsValid(std::string* error) const {
     *error = "num_tries must be at least 1 and finite";
     return false;
   }
-  return true;
+  return IsValidTimeLimit(time_limit, error);
+}
+
+Eigen::Vector3d FittedPoint(const RefineOptions& options, const MotionPrior& prior,
+                            const Rig& rig) {
+  return UsesBodyLength(options, prior) ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : RigCentre(rig);
+}
+
+RefineSummary RefineAbout(const RefineOptions& given, const GroupedMatches& matches,
+                          const Eigen::Vector3d& origin, const MotionPrior& prior, Pose* pose) {
+  RefineOptions options = given;
+  options.threshold_px = ThresholdPx(given.threshold_px, matches.rig());
+  // The rig's centre in the frame of `matches`, or the body's origin.
+  const Eigen::Vector3d step =
+      UsesBodyLength(options, prior) ? Eigen::Vector3d(-origin) : RigCentre(matches.rig());
+  // Of a rig that is centred already only rounding is left.
+  constexpr double kRounding = 1e-12;
+  double size = 0.0;
+  for (const RigCamera& camera : matches.rig().cameras) size = std::max(size, camera.s.norm());
+  const bool there = step.norm() <= kRounding * (size + origin.norm());
+  const Eigen::Vector3d point = there ? origin : Eigen::Vector3d(origin + step);
+  Pose result = MotionOfPoint(*pose, point);
+  const RefineSummary summary =
+      there ? Refiner(options, matches, point, prior).Run(&result)
+            : Refiner(options, matches.WithOrigin(step), point, prior).Run(&result);
+  if (summary.IsSolutionUsable()) *pose = MotionOfBody(result, point);
+  return summary;
 }
 
 RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,
                      const MotionPrior& prior, Pose* pose) {
-  return Refiner(options, matches, prior).Run(pose);
+  return RefineAbout(options, matches, Eigen::Vector3d::Zero(), prior, pose);
 }
 
 RefineSummary Refine(const RefineOptions& options, const Rig& rig,

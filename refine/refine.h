@@ -3,15 +3,23 @@
 #ifndef RIGEL_REFINE_REFINE_H_
 #define RIGEL_REFINE_REFINE_H_
 
+#include <array>
+#include <atomic>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <Eigen/Core>
+
+#include "rigel/core/eigen_types.h"
 #include "rigel/core/match.h"
+#include "rigel/core/pixel_unit.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/prior.h"
 #include "rigel/core/rig.h"
+#include "rigel/core/stop.h"
 #include "rigel/minimal/grouped_matches.h"
 #include "rigel/refine/epipolar_residuals.h"
 #include "rigel/refine/loss.h"
@@ -49,6 +57,13 @@ enum class RefineEngine {
   kCeres,  // a ceres::Problem
 };
 
+// Where a refinement is.
+struct RefineProgress {
+  int round = 0;      // from 1
+  int iteration = 0;  // of the round's least squares, from 0
+  double cost = 0.0;  // 1/2 sum rho(r^2) by now
+};
+
 struct RefineOptions {
   RefineForm form = RefineForm::kFull;
   ResidualKind residual = ResidualKind::kSampson;
@@ -69,8 +84,8 @@ struct RefineOptions {
   RefineEngine engine = RefineEngine::kAuto;
 
   // > 0; matches with a larger Sampson error are left out. Where the noise is given, nothing below
-  // kGateSigmas of it is.
-  double threshold_px = 1.5;
+  // kGateSigmas of it is. kAutoThresholdPx: as of RansacOptions.
+  double threshold_px = kAutoThresholdPx;
   int max_rounds = 5;           // >= 1; selections of inliers
   int max_num_iterations = 50;  // >= 0, a round
   ScaleMode scale = ScaleMode::kAuto;
@@ -81,6 +96,13 @@ struct RefineOptions {
   // agree must make up for (RefineSummary::exceeds_chance).
   double num_tries = 1e7;
 
+  // Seconds from the call on, >= 0, and a flag that any thread may set: either ends the refinement
+  // with Termination::kStopped after the iteration in progress.
+  std::optional<double> time_limit;
+  const std::atomic<bool>* cancel = nullptr;  // null, or outlives the call
+  // Called after each iteration, where it is not empty, by the thread that called Refine().
+  std::function<void(const RefineProgress&)> progress;
+
   bool IsValid(std::string* error) const;
 };
 
@@ -90,22 +112,38 @@ enum class Termination {
   kIterationLimit,  // usable, not converged
   kDegenerate,      // the matches do not determine the free parameters; pose unchanged
   kFailure,         // wrong input; pose unchanged
+  // By the time limit or the flag: pose is the best by then. It is no minimum, so that there is no
+  // covariance, and nothing is called observable.
+  kStopped,
 };
 
 const char* TerminationName(Termination termination);
 
+// How many of the matches from camera1 at time 1 to camera2 at time 2 fit.
+struct CameraPairFit {
+  int camera1 = 0;
+  int camera2 = 0;
+  int rows = 0;
+  int inliers = 0;
+  // Unit direction of R s_i + t - s_j in the body frame at time 2: what such matches alone know of
+  // the translation. Zero without a baseline.
+  std::array<double, 3> baseline = {0, 0, 0};
+};
+
 struct RefineSummary {
   Termination termination = Termination::kNotRun;
   std::string message = "Refine was not called.";
+  StopReason stopped = StopReason::kNone;  // what stopped it, with kStopped
   int num_rounds = -1;
   int num_iterations = -1;     // of all rounds
   double initial_cost = -1.0;  // 1/2 sum rho(r^2) over the first and the last selection
   double final_cost = -1.0;
 
   int num_inliers = 0;
-  std::vector<char> inliers;         // 1 or 0 for each match, in the order of the input
-  double median_residual_px = -1.0;  // median |Sampson error| of the inliers
-  double noise_px = -1.0;            // given or estimated
+  std::vector<char> inliers;                // 1 or 0 for each match, in the order of the input
+  std::vector<CameraPairFit> camera_pairs;  // by camera1, then camera2
+  double median_residual_px = -1.0;         // median |Sampson error| of the inliers
+  double noise_px = -1.0;                   // given or estimated
 
   // Covariance of (rotation, translation) for R <- Exp(d) R, t <- t + e over the parameters that
   // were free: of rank 5 where |t| was held, 2 to 4 where the prior was exact. Where the
@@ -113,32 +151,52 @@ struct RefineSummary {
   // translation may be. The depth forms state it without the error of their reference. Empty if
   // not determined.
   std::optional<Matrix6d> covariance;
-  std::string weakest_direction;       // of the covariance, in words (WeakestDirection)
-  double rotation_sigma = -1.0;        // radians; -1 if there is no covariance
-  double direction_sigma = -1.0;       // radians
-  double relative_scale_sigma = -1.0;  // of |t|, a fraction; infinite if not determined
+  std::string weakest_direction;  // of the covariance, in words (WeakestDirection)
+  double rotation_sigma = -1.0;   // radians; -1 if there is no covariance
+  double direction_sigma = -1.0;  // of t, radians
+  // FittedPoint(). Where its length was held, the information lacks what is along b.
+  Eigen::Vector3d fitted_point = Eigen::Vector3d::Zero();
+  double rig_direction_sigma = -1.0;   // of b, radians: small where a long lever spoils that of t
+  double relative_scale_sigma = -1.0;  // of |b|, a fraction; infinite if not determined
   double parallax_px = -1.0;           // see ParallaxPercentilePx()
   double parallax_limit_px = -1.0;     // what it has to exceed for translation_observable
   bool scale_free = false;             // |t| was refined, not held
   bool exceeds_chance = false;         // more matches agree than random ones would
   bool rotation_observable = false;
-  bool translation_observable = false;  // the direction of t means something
+  bool translation_observable = false;      // the direction of t means something
+  bool rig_translation_observable = false;  // that of b does
   bool scale_observable = false;
 
   bool IsSolutionUsable() const {
-    return termination == Termination::kConverged || termination == Termination::kIterationLimit;
+    return termination == Termination::kConverged || termination == Termination::kIterationLimit ||
+           termination == Termination::kStopped;
   }
+  // The direction of the rig's own motion is known: enough for an edge or a step.
+  bool RigDirectionKnown() const { return translation_observable || rig_translation_observable; }
   std::string BriefReport() const;
+  // The one camera pair that all inliers are of, if that is of two cameras: it fixes the motion up
+  // to the length of its baseline, whatever |t| is. Null otherwise.
+  const CameraPairFit* OnlyCameraPair() const;
   // One clause on what is and what is not observable, and by how much.
   std::string ObservabilityReport() const;
 };
+static_assert(kSameLayoutEverywhere<RefineSummary>, "no member of RefineSummary may be aligned");
 
 // Refines `pose`, which must be near the motion. Never throws, exits or logs; on kDegenerate and
-// kFailure `pose` is unchanged. Thread-safe; deterministic.
+// kFailure `pose` is unchanged. Thread-safe; deterministic unless stopped.
 RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,
                      const MotionPrior& prior, Pose* pose);
 RefineSummary Refine(const RefineOptions& options, const Rig& rig,
                      const std::vector<Match>& matches, const MotionPrior& prior, Pose* pose);
+
+// The point of the body whose motion b a refinement fits (rig_centre.h): the rig's centre, or the
+// body's origin where the options hold |t| of the body or weigh the prior's distance.
+Eigen::Vector3d FittedPoint(const RefineOptions& options, const MotionPrior& prior, const Rig& rig);
+
+// The same where the origin of the body frame of `matches` is `origin` of the body's: `pose` and
+// the summary are of the body. With `origin` the rig's centre nothing is copied.
+RefineSummary RefineAbout(const RefineOptions& options, const GroupedMatches& matches,
+                          const Eigen::Vector3d& origin, const MotionPrior& prior, Pose* pose);
 
 }  // namespace rigel
 

@@ -42,12 +42,13 @@ constexpr std::array<std::pair<ResidualKind, const char*>, 3> kResidualNames = {
      {ResidualKind::kAngular, "angular"},
      {ResidualKind::kAlgebraic, "algebraic"}}};
 
-constexpr std::array<std::pair<Termination, const char*>, 5> kTerminationNames = {
+constexpr std::array<std::pair<Termination, const char*>, 6> kTerminationNames = {
     {{Termination::kNotRun, "not run"},
      {Termination::kConverged, "converged"},
      {Termination::kIterationLimit, "iteration limit"},
      {Termination::kDegenerate, "degenerate"},
-     {Termination::kFailure, "failure"}}};
+     {Termination::kFailure, "failure"},
+     {Termination::kStopped, "stopped"}}};
 
 }  // namespace
 
@@ -73,7 +74,20 @@ std::string RefineSummary::BriefReport() const {
   return text;
 }
 
+const CameraPairFit* RefineSummary::OnlyCameraPair() const {
+  const CameraPairFit* only = nullptr;
+  for (const CameraPairFit& fit : camera_pairs) {
+    if (fit.inliers == 0) continue;
+    if (only != nullptr) return nullptr;
+    only = &fit;
+  }
+  return only != nullptr && only->camera1 != only->camera2 ? only : nullptr;
+}
+
 std::string RefineSummary::ObservabilityReport() const {
+  if (termination == Termination::kStopped) {
+    return "it is not known what is observable: the refinement was not done (" + message + ")";
+  }
   char text[256];
   if (!rotation_observable && exceeds_chance) {
     if (rotation_sigma >= 0 && RadToDeg(rotation_sigma) < 180) {
@@ -92,7 +106,19 @@ std::string RefineSummary::ObservabilityReport() const {
     return text;
   }
   if (!translation_observable) {
-    if (parallax_px >= 0 && !std::isfinite(parallax_px)) {
+    // The share from which on a standard deviation says that nothing is known.
+    constexpr double kNothingKnown = 10.0;
+    const CameraPairFit* only = OnlyCameraPair();
+    if (only != nullptr) {
+      std::snprintf(
+          text, sizeof(text),
+          "|t| is not determined by one camera pair: %d-%d gives the direction of its own "
+          "baseline, (%.3f, %.3f, %.3f)",
+          only->camera1, only->camera2, only->baseline[0], only->baseline[1], only->baseline[2]);
+    } else if (parallax_px >= 0 && !std::isfinite(parallax_px) &&
+               !(relative_scale_sigma < kNothingKnown)) {
+      std::snprintf(text, sizeof(text), "|t| is not determined by the camera pairs that agree");
+    } else if (parallax_px >= 0 && !std::isfinite(parallax_px)) {
       std::snprintf(text, sizeof(text),
                     "|t| is consistent with zero: its standard deviation is %.0f percent of it",
                     100 * relative_scale_sigma);

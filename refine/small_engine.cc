@@ -14,7 +14,6 @@ namespace {
 using ParameterVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
 using ParameterMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 // Cost, gradient and curvature at one point, and how to get them.
 class ParameterEquations {
@@ -142,6 +141,7 @@ LeastSquaresSummary SmallEngine::Solve(const SmallEngineOptions& options,
   double mu = kInitialDamping;
   double growth = 2.0;
   while (summary.num_iterations < options.max_num_iterations) {
+    if (options.stop != nullptr && options.stop->Asked()) break;
     ++summary.num_iterations;
     const ParameterVector step = DampedStep(at, mu);
     const double predicted =
@@ -173,6 +173,7 @@ LeastSquaresSummary SmallEngine::Solve(const SmallEngineOptions& options,
       // Nothing below rounding can be gained.
       if (mu > kMaxDamping) break;
     }
+    if (options.progress != nullptr) (*options.progress)(summary.num_iterations, at.cost);
   }
   summary.final_cost = at.cost;
   num_iterations_ = summary.num_iterations;

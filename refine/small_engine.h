@@ -7,9 +7,11 @@
 #ifndef RIGEL_REFINE_SMALL_ENGINE_H_
 #define RIGEL_REFINE_SMALL_ENGINE_H_
 
+#include <functional>
 #include <vector>
 
 #include "rigel/core/pose.h"
+#include "rigel/core/stop.h"
 #include "rigel/minimal/grouped_matches.h"
 #include "rigel/refine/loss.h"
 #include "rigel/refine/motion_parameterization.h"
@@ -27,6 +29,10 @@ struct SmallEngineOptions {
   // Minimize(): TranslationForm::kInverseScale instead of a free t, for matches that hardly
   // determine |t|.
   bool inverse_scale = false;
+  // Asked before each iteration (null: never): it ends with the best parameters by then.
+  Stop* stop = nullptr;
+  // Called after each iteration with its number, from 1, and the cost. Null: not at all.
+  const std::function<void(int, double)>* progress = nullptr;
 };
 
 // The matches of weight above zero, group by group: what is left out takes no time.

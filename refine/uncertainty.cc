@@ -17,7 +17,6 @@ namespace rigel {
 
 namespace {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 // Of an information matrix with a unit diagonal: what rounding in pixels of some hundred makes of
 // zero stays below this.
@@ -96,31 +95,39 @@ Matrix6d ReliableInformation(const GroupedMatches& matches,
   std::vector<double> weights;
   EpipoleWeights(matches, pose, noise_px, &weights);
   for (size_t k = 0; k < weights.size(); ++k) weights[k] *= match_weights[k];
-  std::vector<Matrix6d> information(matches.groups().size());
   std::vector<double> baseline;
-  Matrix6d sum = Matrix6d::Zero();
-  double longest = 0.0;
-  for (size_t g = 0; g < matches.groups().size(); ++g) {
-    const MatchGroup& group = matches.groups()[g];
-    information[g] =
-        GroupInformation(matches, group, pose, weights.data() + group.begin) / variance;
-    sum += information[g];
+  for (const MatchGroup& group : matches.groups()) {
     const RigCamera& c1 = matches.rig().cameras[group.camera1];
     const RigCamera& c2 = matches.rig().cameras[group.camera2];
     baseline.push_back((pose.R * c1.s + pose.t - c2.s).norm());
-    longest = std::max(longest, baseline.back());
   }
-  for (size_t g = 0; g < information.size(); ++g) {
-    if (!(baseline[g] < kShortBaseline * longest)) continue;
-    if (!(MedianParallaxPx(matches, matches.groups()[g], match_weights, pose) <
-          kParallaxNoise * noise_px)) {
-      continue;
+  const double longest =
+      baseline.empty() ? 0.0 : *std::max_element(baseline.begin(), baseline.end());
+  const auto information_of = [&](size_t g) {
+    const MatchGroup& group = matches.groups()[g];
+    return Matrix6d(GroupInformation(matches, group, pose, weights.data() + group.begin) /
+                    variance);
+  };
+  Matrix6d sum = Matrix6d::Zero();
+  std::vector<size_t> in_question;
+  for (size_t g = 0; g < baseline.size(); ++g) {
+    if (baseline[g] < kShortBaseline * longest &&
+        MedianParallaxPx(matches, matches.groups()[g], match_weights, pose) <
+            kParallaxNoise * noise_px) {
+      in_question.push_back(g);
+    } else {
+      sum += information_of(g);
     }
+  }
+  // Each has to be told from zero by those that count already. Never added and taken away again:
+  // the information is of 1 / baseline^2, and near zero rounding would leave nothing else.
+  std::stable_sort(in_question.begin(), in_question.end(),
+                   [&](size_t a, size_t b) { return baseline[a] > baseline[b]; });
+  for (const size_t g : in_question) {
     Matrix6d others;
-    const bool known = CovarianceOfBasis(sum - information[g], basis, &others);
-    const double sigma = known ? std::sqrt(others.block<3, 3>(3, 3).trace())
-                               : std::numeric_limits<double>::infinity();
-    if (baseline[g] < kSigmas * sigma) sum -= information[g];
+    if (!CovarianceOfBasis(sum, basis, &others)) break;
+    if (baseline[g] < kSigmas * std::sqrt(others.block<3, 3>(3, 3).trace())) break;
+    sum += information_of(g);
   }
   return sum;
 }

@@ -10,14 +10,13 @@
 
 #include <Eigen/Core>
 
+#include "rigel/core/eigen_types.h"
 #include "rigel/core/pose.h"
 #include "rigel/minimal/alignment.h"
 #include "rigel/minimal/grouped_matches.h"
 #include "rigel/refine/motion_parameterization.h"
 
 namespace rigel {
-
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 // Scale is observable if the standard deviation of |t| is at most this fraction of |t|.
 inline constexpr double kScaleObservableRatio = 0.05;
@@ -27,8 +26,8 @@ inline constexpr double kDirectionObservableDeg = 10.0;
 // the image noise beyond what the rotation moves them. Without translation the matches still fit
 // some direction, as well as their noise does, and the covariance does not know it.
 inline constexpr double kParallaxSigmas = 5.0;
-// Matchers are no better than this, pixels, however well the matches fit; a fit to noise would seem
-// to be.
+// Matchers are no better than this, pixels (times PixelUnit()), however well the matches fit; a fit
+// to noise would seem to be.
 inline constexpr double kMinMatchNoisePx = 0.1;
 // Without intra-camera matches |t| has to exceed kParallaxSigmas of its own standard deviations.
 // Rotation is observable if its largest standard deviation is at most this.
@@ -53,7 +52,8 @@ void EpipoleWeights(const GroupedMatches& matches, const Pose& pose, double nois
 // The same over the variance noise_px^2, without what looks like information and is not, because
 // the Sampson error is not linear within the noise there: matches near an epipole count by their
 // EpipoleWeights, and camera pairs whose baseline R s_i + t - s_j is so short that the other
-// matches cannot tell it from zero do not count.
+// matches cannot tell it from zero do not count: the others are those that are longer or of more
+// parallax.
 Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<double>& weights,
                              const Pose& pose, double noise_px);
 

@@ -66,7 +66,7 @@ def chain(motions):
 def read_motions(path):
     """The motions of the truth line and of the stereo_odometry comment of a match file."""
     motions = {}
-    with open(path, encoding="utf-8") as file:
+    with open(path, encoding="utf-8-sig") as file:
         for line in file:
             words = line.replace("#", " ").split()
             if not words or words[0] == "matches":
@@ -83,7 +83,7 @@ def read_motions(path):
 def rows(path, columns):
     """As evo: blanks part the columns, # starts a comment, each row has as many."""
     result = []
-    with open(path, encoding="utf-8") as file:
+    with open(path, encoding="utf-8-sig") as file:
         for number, line in enumerate(file, 1):
             if line.startswith("#"):
                 continue

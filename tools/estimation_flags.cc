@@ -1,30 +1,45 @@
 #include "rigel/tools/estimation_flags.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <iostream>
+#include <map>
 #include <sstream>
 
 #include <gflags/gflags.h>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/body_axes.h"
+#include "rigel/core/pixel_unit.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/problems/message_groups.h"
 #include "rigel/refine/solver_choice.h"
+#include "rigel/tools/tool.h"
 
 DEFINE_string(
     matches, "",
-    "match files and directories of *.matches, comma separated; a comma in a path cannot be "
-    "passed");
+    "match files (*.matches, *.matches.gz) and directories of them, comma separated; - is stdin; a "
+    "comma in a path cannot be passed");
 DEFINE_string(use, "all",
               "which matches are used: all, intra (same camera at both times) or inter");
 DEFINE_string(
     prior, "file",
     "where the motion prior comes from: file, its lines; body, gravity, axis and normal are "
-    "the body's Y (no sensor at all); truth, exact, from the truth line");
+    "the body's down, see --down (no sensor at all); truth, exact, from the truth line");
+DEFINE_string(
+    down, "",
+    "which way is down in the body frame: +x, -x, +y, -y, +z, -z or three numbers x,y,z; if empty "
+    "the body axis nearest to the mean of the cameras' down directions, which is told");
+DEFINE_string(
+    forward, "",
+    "which way the vehicle's front is in the body frame, for 2pt-ackermann and the error of "
+    "--prior_noise_axis=roll: as --down; if empty the files' 'forward' line, else as the cameras "
+    "look if they agree, else +x where -z is down, +z where +y is down");
 DEFINE_double(prior_noise_deg, 0,
               "error of exactly that angle on the prior, its sign random per pair");
 DEFINE_string(prior_noise_axis, "pitch",
-              "the error turns about: pitch (body X), roll (Z) or random");
+              "the error turns about: pitch (the body's right), roll (its forward) or random");
 DEFINE_double(prior_sigma_deg, 0,
               "the prior's stated 1-sigma for --use_prior_in_refine; 0: as in the file");
 DEFINE_bool(use_prior_in_refine, false, "weigh the prior by its sigma in the refinement");
@@ -43,8 +58,9 @@ DEFINE_string(residual, "sampson",
               "intra-camera matches and a free scale it collapses to zero motion)");
 DEFINE_string(loss, "cauchy",
               "robust loss of the refinement: none, huber, cauchy, tukey, truncated");
-DEFINE_double(threshold_px, 1.5,
-              "inlier threshold on the Sampson error; 3 sigma of the noise is best");
+DEFINE_string(threshold_px, "auto",
+              "inlier threshold on the Sampson error; 3 sigma of the noise is best. auto: 1.5, or "
+              "1/300 of the shortest focal length where that is less");
 DEFINE_double(confidence, 0.9999,
               "RANSAC stops when a sample of inliers was drawn with this probability");
 DEFINE_int32(max_iterations, 10000, "largest number of RANSAC iterations");
@@ -66,6 +82,18 @@ std::string Text(double value) {
   return text.str();
 }
 
+// The whole of `text` as a positive finite number.
+bool ParsePositive(const std::string& text, double* value) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || !(number > 0) ||
+      !std::isfinite(number)) {
+    return false;
+  }
+  *value = number;
+  return true;
+}
+
 const std::optional<double>& SigmaOf(const MotionPrior& prior, PriorKind kind) {
   if (kind == PriorKind::kVertical) return prior.gravity_sigma;
   return kind == PriorKind::kPlanar ? prior.normal_sigma : prior.axis_sigma;
@@ -84,6 +112,10 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
     *error = "--matches is missing: name match files or directories";
     return false;
   }
+  const std::vector<std::string> items = SplitCommas(FLAGS_matches);
+  if (std::count(items.begin(), items.end(), "-") > 1) {
+    return wrong("matches", FLAGS_matches, "'-' once: stdin can be read but once");
+  }
   if (!ParseMatchUse(FLAGS_use, &options->use)) {
     return wrong("use", FLAGS_use, "all, intra or inter");
   }
@@ -92,6 +124,25 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
   }
   if (!ParsePriorNoiseAxis(FLAGS_prior_noise_axis, &options->prior.noise_axis)) {
     return wrong("prior_noise_axis", FLAGS_prior_noise_axis, "pitch, roll or random");
+  }
+  const auto direction = [&](const std::string& flag, const std::string& value,
+                             std::optional<Eigen::Vector3d>* stated) {
+    if (value.empty()) return true;
+    Eigen::Vector3d read;
+    if (!ParseDirection(value, &read)) {
+      return wrong(flag, value, "+x, -x, +y, -y, +z, -z or three numbers x,y,z");
+    }
+    *stated = read;
+    return true;
+  };
+  BodyAxes axes;
+  if (!direction("down", FLAGS_down, &options->prior.down) ||
+      !direction("forward", FLAGS_forward, &options->prior.forward)) {
+    return false;
+  }
+  if (!ResolveBodyAxes(Rig(), options->prior.down, options->prior.forward, &axes, error)) {
+    *error = "--down and --forward: " + *error;
+    return false;
   }
   if (!std::isfinite(FLAGS_prior_noise_deg) || std::abs(FLAGS_prior_noise_deg) > 180) {
     return wrong("prior_noise_deg", Text(FLAGS_prior_noise_deg), "-180 to 180");
@@ -134,7 +185,11 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
   estimate.refine.scale = FLAGS_fix_translation_norm ? ScaleMode::kFixed : ScaleMode::kAuto;
   options->prior.true_distance = FLAGS_fix_translation_norm;
   options->use_stated_noise = !FLAGS_estimate_noise;
-  estimate.ransac.threshold_px = FLAGS_threshold_px;
+  if (FLAGS_threshold_px == "auto") {
+    estimate.ransac.threshold_px = kAutoThresholdPx;
+  } else if (!ParsePositive(FLAGS_threshold_px, &estimate.ransac.threshold_px)) {
+    return wrong("threshold_px", FLAGS_threshold_px, "auto or a positive number");
+  }
   estimate.ransac.confidence = FLAGS_confidence;
   estimate.ransac.max_iterations = FLAGS_max_iterations;
   estimate.ransac.seed = FLAGS_seed;
@@ -166,9 +221,10 @@ bool CanRefine(const EstimateOptions& estimate, const std::string& solver, std::
 
 InputFiles ListInput() {
   InputFiles input;
-  std::vector<std::string> errors;
-  input.paths = ListMatchFiles(FLAGS_matches, &errors);
+  std::vector<std::string> errors, notes;
+  input.paths = ListMatchFiles(FLAGS_matches, &errors, &notes);
   input.all_there = errors.empty();
+  for (const std::string& note : notes) std::cerr << note << "\n";
   for (const std::string& error : errors) std::cerr << error << "\n";
   input.all = input.paths;
   input.total = static_cast<int>(input.all.size());
@@ -215,6 +271,47 @@ void ReportUnweighedPriors(const ComparisonOptions& options,
             << pairs.size() << " pairs, it is not weighed there; state --prior_sigma_deg\n";
 }
 
+void ReportSuggestedAxes(const ComparisonOptions& options, const std::vector<std::string>& solvers,
+                         const std::vector<AppliedAxes>& applied) {
+  // More than a camera is tilted on a vehicle.
+  constexpr double kFarOffDeg = 25.0;
+  const bool uses_forward =
+      std::count(solvers.begin(), solvers.end(), "2pt-ackermann") > 0 ||
+      (options.prior.noise != 0.0 && options.prior.noise_axis != PriorNoiseAxis::kRandom);
+  std::map<std::string, int> counts;
+  double off_deg = 0.0;
+  for (const AppliedAxes& pair : applied) {
+    std::string text;
+    if (pair.down_suggested) {
+      text = "--down=" + DirectionText(pair.axes.down);
+      off_deg = std::max(off_deg, RadToDeg(pair.cameras_off_down));
+    }
+    if (pair.forward_suggested && uses_forward) {
+      text += (text.empty() ? "--forward=" : " --forward=") + DirectionText(pair.axes.forward);
+    }
+    if (!text.empty()) ++counts[text];
+  }
+  if (counts.empty()) return;
+  std::string line;
+  for (const auto& [text, count] : counts) {
+    line += (line.empty() ? "" : ", ") + text;
+    if (counts.size() > 1)
+      line += " in " + std::to_string(count) + (count == 1 ? " file" : " files");
+  }
+  line += counts.size() > 1 ? ": taken from the cameras of the rigs"
+                            : ": taken from the cameras of the rig";
+  if (off_deg > kFarOffDeg) {
+    line += ", whose mean down is " + std::to_string(static_cast<int>(std::lround(off_deg))) +
+            " degrees off it; state it if it is another";
+  }
+  std::cerr << line << "\n";
+}
+
+void ReportGrouped(const std::vector<std::string>& messages,
+                   const std::vector<std::string>& files) {
+  for (const std::string& line : GroupMessages(messages, files)) std::cerr << line << "\n";
+}
+
 std::string FailureMessage(const FramePair& pair, const std::string& solver,
                            const std::string& message) {
   // Some messages name the solver themselves.
@@ -226,7 +323,7 @@ std::string FailureMessage(const FramePair& pair, const std::string& solver,
                                   ? "'gravity1' and 'gravity2' lines"
                               : info->prior == PriorKind::kPlanar ? "a 'normal' line"
                                                                   : "an 'axis' line";
-    text += "; add " + lines + " to the file or use --prior=body";
+    text += "; add " + lines + " to the file, or use --prior=body or the solver auto";
   }
   return text;
 }

@@ -43,6 +43,14 @@ void ReportUnweighedPriors(const ComparisonOptions& options,
                            const std::vector<std::string>& solvers,
                            const std::vector<FramePair>& pairs);
 
+// Says on stderr, once, which axes of the body were taken from the cameras of the rigs. `forward`
+// counts only where a solver or an error of the prior looks at it.
+void ReportSuggestedAxes(const ComparisonOptions& options, const std::vector<std::string>& solvers,
+                         const std::vector<AppliedAxes>& applied);
+
+// Prints messages that begin with the names of files on stderr, equal ones once with a count.
+void ReportGrouped(const std::vector<std::string>& messages, const std::vector<std::string>& files);
+
 // What to tell of a pair that `solver` could not solve: its name, the solver, EstimateMotion's
 // message and, where a prior is missing, where one could come from.
 std::string FailureMessage(const FramePair& pair, const std::string& solver,

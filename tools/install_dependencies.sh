@@ -4,10 +4,10 @@ set -euo pipefail
 
 packages=(
   cmake g++ ninja-build
-  libceres-dev libeigen3-dev libgoogle-glog-dev libgflags-dev nlohmann-json3-dev
+  libceres-dev libeigen3-dev libgoogle-glog-dev libgflags-dev nlohmann-json3-dev zlib1g-dev
   libopencv-features2d-dev libopencv-imgcodecs-dev libopencv-calib3d-dev libyaml-cpp-dev
   libgtest-dev libgmock-dev libbenchmark-dev
-  python3-matplotlib
+  parallel python3-matplotlib
 )
 
 say() { echo "install_dependencies: $*" >&2; }

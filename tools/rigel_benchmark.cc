@@ -76,8 +76,9 @@ std::string FirstGiven(const std::vector<std::string>& flags) {
 
 // Reads all files of --matches with their prior. False if any could not be read.
 bool ReadPairs(const PriorSourceOptions& prior, std::vector<FramePair>* pairs) {
-  std::vector<std::string> errors;
-  const std::vector<std::string> paths = ListMatchFiles(FLAGS_matches, &errors);
+  std::vector<std::string> errors, notes;
+  const std::vector<std::string> paths = ListMatchFiles(FLAGS_matches, &errors, &notes);
+  for (const std::string& note : notes) std::cerr << note << "\n";
   for (size_t k = 0; k < paths.size(); ++k) {
     FramePair pair;
     std::string error;

@@ -9,6 +9,7 @@
 
 #include <gflags/gflags.h>
 
+#include "rigel/core/body_axes.h"
 #include "rigel/problems/batch.h"
 #include "rigel/problems/calibration_report.h"
 #include "rigel/problems/match_file.h"
@@ -41,7 +42,7 @@ constexpr char kUsage[] =
     "  rigel_compare --matches=CALIBRATED --solvers=3pt --prior=file\n"
     "\n"
     "Estimates the motion of each match file of one vehicle and from them all the normal of the\n"
-    "plane that it moves in, starting from the files' normal or the body's Y, and the rotation\n"
+    "plane that it moves in, starting from the files' normal or the body's down, and the rotation\n"
     "that turns the stated gravity into the body frame. What the motions do not determine is said\n"
     "and left as it was: a drive straight ahead says nothing of the plane's roll, and without\n"
     "turns nothing of the IMU's mounting. Files are replaced whole, all new ones written before "
@@ -143,7 +144,9 @@ std::set<std::string> OtherMatchFiles(const std::set<std::string>& targets, std:
   for (; !*code && entry != fs::directory_iterator(); entry.increment(*code)) {
     const std::string path = entry->path().string();
     std::error_code ignored;
-    if (entry->path().extension() != ".matches" || entry->is_directory(ignored)) continue;
+    if (!IsMatchFileName(entry->path().filename().string()) || entry->is_directory(ignored)) {
+      continue;
+    }
     const bool own = targets.count((fs::path(FLAGS_output) / entry->path().filename()).string()) &&
                      !FindHeaderComment(path, "# rigel_calibrate_prior").empty();
     if (!own) others.insert(entry->path().filename().string());
@@ -200,13 +203,26 @@ bool SameCameras(const Rig& a, const Rig& b) {
                     });
 }
 
-// The body's Y unless all files state the same normal.
-Eigen::Vector3d Start(const std::vector<FramePair>& pairs) {
-  const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
-  for (const FramePair& pair : pairs) {
-    if (!pair.prior.normal || *pair.prior.normal != *pairs.front().prior.normal) return y;
+// What --down says, else the normal that all files state, else what the cameras suggest: that is
+// then noted in `applied`.
+Eigen::Vector3d Start(const ComparisonOptions& options, const std::vector<FramePair>& pairs,
+                      const Rig& rig, std::vector<AppliedAxes>* applied) {
+  if (options.prior.down) return *options.prior.down;
+  const std::optional<Eigen::Vector3d>& normal = pairs.front().prior.normal;
+  const bool stated = options.prior.source == PriorSource::kFile && normal &&
+                      std::all_of(pairs.begin(), pairs.end(), [&](const FramePair& pair) {
+                        return pair.prior.normal && *pair.prior.normal == *normal;
+                      });
+  if (stated) return *normal;
+  BodyAxes axes;
+  std::string error;
+  ResolveBodyAxes(rig, {}, pairs.front().prior.forward, &axes, &error);
+  for (AppliedAxes& of_pair : *applied) {
+    of_pair.axes.down = axes.down;
+    of_pair.down_suggested = true;
+    of_pair.cameras_off_down = CamerasOffDown(rig, axes.down);
   }
-  return *pairs.front().prior.normal;
+  return axes.down;
 }
 
 // Whether all files have these marks already and the calibration turns nothing: after a run that
@@ -250,7 +266,7 @@ bool WriteFiles(const CalibrationReport& report, const Lines& lines,
     if (report.gravity) changed.merge(GravityLines(*report.gravity, pairs[k].prior));
     std::string text;
     if (!ReadWithHeaderLines(paths[k], changed, &text, &error) ||
-        !files.Add(targets[k], text, &error)) {
+        !files.Add(targets[k], MatchFileBytes(targets[k], text), &error)) {
       std::cerr << error << "; no file is written\n";
       return false;
     }
@@ -294,6 +310,11 @@ int Run() {
     return UsageError("--shard: a calibration is of all files");
   }
   const bool writes = FLAGS_in_place || !FLAGS_output.empty();
+  const std::vector<std::string> items = SplitCommas(FLAGS_matches);
+  if (writes && std::count(items.begin(), items.end(), "-") > 0) {
+    return UsageError("--matches=" + FLAGS_matches + ": stdin has no file whose lines could be " +
+                      "written; without --in_place and --output it is read");
+  }
 
   const InputFiles input = ListInput();
   if (!OutputsDiffer({{"json", FLAGS_json}}, &error) ||
@@ -316,6 +337,7 @@ int Run() {
   struct Estimated {
     CalibrationMotion motion;
     Rig rig;
+    std::string failure;  // empty if there is a refined motion
   };
   const std::function<Estimated(const FramePair&)> work = [&](const FramePair& pair) {
     EstimateOptions pair_options = estimate;
@@ -324,7 +346,8 @@ int Run() {
     const bool refined = e.status == EstimateStatus::kSuccess && e.refine.IsSolutionUsable();
     return Estimated{{e.pose, refined && e.refine.rotation_observable,
                       refined && e.refine.translation_observable, pair.prior},
-                     pair.rig};
+                     pair.rig,
+                     refined ? "" : FailureMessage(pair, FLAGS_solver, e.message)};
   };
   std::vector<BatchItem<Estimated>> items;
   {
@@ -335,26 +358,43 @@ int Run() {
   std::vector<CalibrationMotion> motions;
   CalibrationReport report;
   Rig rig;  // of the first pair
+  std::vector<std::string> errors, failures;
+  std::vector<AppliedAxes> axes;
   for (BatchItem<Estimated>& item : items) {
     if (!item.error.empty()) {
-      std::cerr << PrintablePath(item.error) << "\n";
+      // Each that could not be read is told; of those that were many may lack the same.
+      if (item.pair.name.empty()) {
+        std::cerr << PrintablePath(item.error) << "\n";
+      } else {
+        errors.push_back(PrintablePath(item.error));
+      }
       ok = false;
       continue;
     }
+    if (!item.result.failure.empty()) failures.push_back(item.result.failure);
     if (pairs.empty()) rig = item.result.rig;
     if (!SameCameras(rig, item.result.rig)) {
+      ReportGrouped(errors, input.paths);
       std::cerr << "a calibration is of one vehicle: cameras differ between "
                 << PrintablePath(pairs.front().name) << " and " << PrintablePath(item.pair.name)
                 << "\n";
       return kExitFailed;
     }
     pairs.push_back(std::move(item.pair));
+    axes.push_back(item.axes);
     motions.push_back(item.result.motion);
     report.estimated += item.result.motion.has_rotation ? 1 : 0;
   }
+  ReportGrouped(errors, input.paths);
+  ReportGrouped(failures, input.paths);
   if (pairs.empty()) return kExitFailed;
   report.pairs = static_cast<int>(pairs.size());
-  report.start = Start(pairs);
+  if (lines.Plane()) report.start = Start(options, pairs, rig, &axes);
+  ReportSuggestedAxes(options, {FLAGS_solver}, axes);
+  if (failures.size() == pairs.size()) {
+    std::cerr << "no pair has a motion\n";
+    ok = false;
+  }
   if (lines.Plane()) report.plane = CalibratePlane(motions, report.start);
   if (lines.gravity) report.gravity = CalibrateGravity(motions);
   std::vector<std::string> output_flags = OutputFlags();
@@ -377,7 +417,7 @@ int Run() {
   const bool any = (report.plane && report.plane->level != CalibrationLevel::kNone) ||
                    (report.gravity && report.gravity->level != CalibrationLevel::kNone);
   if (!any) {
-    std::cerr << "nothing is written: nothing that was asked for is observable\n";
+    std::cerr << "nothing is written: nothing that was asked for is determined\n";
     return kExitFailed;
   }
   return WriteFiles(report, lines, pairs) && ok ? kExitDone : kExitFailed;

@@ -2,12 +2,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <utility>
 
 #include <gflags/gflags.h>
 
 #include "rigel/problems/batch.h"
+#include "rigel/problems/bounds.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/report.h"
 #include "rigel/problems/sequence_tables.h"
@@ -32,6 +34,17 @@ DEFINE_bool(per_pair, false,
 DEFINE_string(merge, "",
               "reports that --shard and --json wrote, comma separated: write that of the whole "
               "instead of reading match files");
+DEFINE_string(
+    fail_above, "",
+    "bounds on statistics over all pairs, comma separated: STATISTIC:LIMIT for each solver or "
+    "SOLVER/STATISTIC:LIMIT, as refined.rotation_deg.median:0.03 with the names of the report "
+    "of --json; one that is above its bound or missing is told and the exit code is 3");
+DEFINE_int32(max_failures, -1, "the same for the number of pairs without a motion; -1: no bound");
+DEFINE_string(
+    baseline, "",
+    "an earlier report of --json: the same for each of its refined errors, its failures and its "
+    "pairs with a direction, solver by solver and sequence by sequence");
+DEFINE_double(tolerance, 0.05, "by what fraction those of --baseline may be exceeded");
 
 namespace rigel {
 namespace {
@@ -53,7 +66,65 @@ constexpr char kUsage[] =
     "Many files, on several machines and put together again (docs/batch.md):\n"
     "\n"
     "  rigel_compare --matches=DIR --shard=0/2 --json=0.json      (and 1/2 to 1.json)\n"
-    "  rigel_compare --merge=0.json,1.json --json=whole.json\n";
+    "  rigel_compare --merge=0.json,1.json --json=whole.json\n"
+    "\n"
+    "As a test, which fails with exit code 3 (docs/regression.md):\n"
+    "\n"
+    "  rigel_compare --matches=DIR --baseline=report.json --max_failures=0\n";
+
+const std::vector<std::string> kBoundFlags = {"baseline", "fail_above", "max_failures",
+                                              "tolerance"};
+
+// False with a message if a flag of them is wrong. Reads no file.
+bool BoundsFromFlags(ReportBounds* bounds, std::string* error) {
+  if (!ParseStatisticBounds(FLAGS_fail_above, &bounds->statistics, error)) {
+    *error = "--fail_above: " + *error;
+    return false;
+  }
+  if (FLAGS_max_failures < -1) {
+    *error = "--max_failures=" + std::to_string(FLAGS_max_failures) + ": expected a number from 0";
+    return false;
+  }
+  if (FLAGS_max_failures >= 0) bounds->max_failures = FLAGS_max_failures;
+  const std::vector<std::string> given = GivenFlags();
+  const auto is_given = [&](const std::string& name) {
+    return std::find(given.begin(), given.end(), name) != given.end();
+  };
+  if (is_given("tolerance") && FLAGS_baseline.empty()) {
+    *error = "--tolerance: has no effect without --baseline";
+    return false;
+  }
+  if (!(FLAGS_tolerance >= 0) || !std::isfinite(FLAGS_tolerance)) {
+    *error = "--tolerance: expected a number from 0, as 0.05 for 5 percent";
+    return false;
+  }
+  bounds->tolerance = FLAGS_tolerance;
+  const bool any = std::any_of(kBoundFlags.begin(), kBoundFlags.end(), is_given);
+  if (any && is_given("shard")) {
+    *error = "--shard: bounds are of the whole; state them where the shards are merged";
+    return false;
+  }
+  return true;
+}
+
+// False with a message on stderr if --baseline cannot be read.
+bool ReadBaseline(ReportBounds* bounds) {
+  if (FLAGS_baseline.empty()) return true;
+  std::string text, error;
+  if (!ReadInput(FLAGS_baseline, &text)) return false;
+  if (ParseBaseline(text, FLAGS_baseline, &bounds->baseline, &error)) return true;
+  std::cerr << error << "\n";
+  return false;
+}
+
+// One line on stderr each bound missed. Who could not do all there was to do has failed, whatever
+// the bounds say of the rest.
+int ExitCode(bool ok, const ReportBounds& bounds, const std::vector<SolverResults>& solvers) {
+  const std::vector<std::string> missed = MissedBounds(bounds, SummarizeAll(solvers, true));
+  for (const std::string& line : missed) std::cerr << line << "\n";
+  if (!ok) return kExitFailed;
+  return missed.empty() ? kExitDone : kExitBoundMissed;
+}
 
 std::vector<OutputFlag> Outputs() { return {{"json", FLAGS_json}, {"csv", FLAGS_csv}}; }
 
@@ -88,10 +159,22 @@ bool Write(ComparisonReport* report, bool by_sequence) {
   return ok;
 }
 
-int Merge() {
+// Whether any solver has a motion of any pair. Says on stderr if not.
+bool AnyMotion(const ComparisonReport& report) {
+  for (const SolverResults& solver : report.solvers) {
+    for (const PairResult& r : solver.pairs) {
+      if (!r.failed || r.status == EstimateStatus::kNotRefined) return true;
+    }
+  }
+  std::cerr << "no pair has a motion\n";
+  return false;
+}
+
+int Merge(ReportBounds* bounds) {
+  std::vector<std::string> allowed = {"csv", "json", "merge", "no_times", "per_pair"};
+  allowed.insert(allowed.end(), kBoundFlags.begin(), kBoundFlags.end());
   for (const std::string& flag : GivenFlags()) {
-    const std::vector<std::string> output = {"csv", "json", "merge", "no_times", "per_pair"};
-    if (std::find(output.begin(), output.end(), flag) == output.end()) {
+    if (std::find(allowed.begin(), allowed.end(), flag) == allowed.end()) {
       return UsageError("--merge: --" + flag + " has no effect, it is as in the reports");
     }
   }
@@ -99,6 +182,7 @@ int Merge() {
   if (names.empty()) return UsageError("--merge=" + FLAGS_merge + ": names no report");
   std::string error;
   if (!OutputsAreNoInputs(Outputs(), names, &error)) return UsageError(error);
+  if (!ReadBaseline(bounds)) return kExitFailed;
   std::vector<ComparisonReport> shards(names.size());
   for (size_t k = 0; k < names.size(); ++k) {
     std::string text;
@@ -116,13 +200,19 @@ int Merge() {
   const std::pair<std::string, std::string> by_sequence("by", "sequence");
   const bool by =
       std::find(whole.options.begin(), whole.options.end(), by_sequence) != whole.options.end();
-  return Write(&whole, by) ? kExitDone : kExitFailed;
+  const bool ok = Write(&whole, by) && AnyMotion(whole);
+  return ExitCode(ok, *bounds, whole.solvers);
 }
 
 int Run() {
   std::string error;
   if (!OutputsDiffer(Outputs(), &error)) return UsageError(error);
-  if (!FLAGS_merge.empty()) return Merge();
+  ReportBounds bounds;
+  if (!BoundsFromFlags(&bounds, &error)) return UsageError(error);
+  if (!FLAGS_baseline.empty() && !OutputsAreNoInputs(Outputs(), {FLAGS_baseline}, &error)) {
+    return UsageError(error);
+  }
+  if (!FLAGS_merge.empty()) return Merge(&bounds);
   ComparisonOptions options;
   if (!OptionsFromFlags(&options, &error)) return UsageError(error);
   options.solvers = SplitCommas(FLAGS_solvers);
@@ -143,6 +233,7 @@ int Run() {
     return UsageError("--by=" + FLAGS_by + ": expected sequence");
   }
 
+  if (!ReadBaseline(&bounds)) return kExitFailed;
   const InputFiles input = ListInput();
   if (!OutputsAreNoInputs(Outputs(), input.all, &error)) return UsageError(error);
   if (input.total == 0) return kExitFailed;
@@ -152,7 +243,12 @@ int Run() {
     comparison = CompareFiles(options, input.paths, input.first, [&] { progress.Step(); });
   }
   for (const std::string& message : comparison.errors) std::cerr << PrintablePath(message) << "\n";
-  bool ok = input.all_there && comparison.errors.empty();
+  std::vector<std::string> without_truth;
+  for (const std::string& message : comparison.without_truth) {
+    without_truth.push_back(PrintablePath(message));
+  }
+  ReportGrouped(without_truth, input.paths);
+  bool ok = input.all_there && comparison.errors.empty() && without_truth.empty();
   // A shard may have nothing to report, the whole may not.
   if (comparison.pairs.empty() && !input.shard) return kExitFailed;
   if (comparison.solvers.empty()) {
@@ -161,24 +257,30 @@ int Run() {
   }
   std::vector<std::string> solvers;
   for (const SolverResults& results : comparison.solvers) solvers.push_back(results.solver);
+  ReportSuggestedAxes(options, solvers, comparison.axes);
   ReportUnweighedPriors(options, solvers, comparison.pairs);
   for (const SolverResults& results : comparison.solvers) {
+    std::vector<std::string> failures;
     for (size_t k = 0; k < results.pairs.size(); ++k) {
       if (!results.pairs[k].failed) continue;
-      std::cerr << FailureMessage(comparison.pairs[k], results.solver, results.pairs[k].message)
-                << "\n";
+      failures.push_back(
+          FailureMessage(comparison.pairs[k], results.solver, results.pairs[k].message));
     }
+    ReportGrouped(failures, input.paths);
   }
 
   ComparisonReport report;
   std::vector<std::string> output_flags = OutputFlags();
   output_flags.insert(output_flags.end(), {"merge", "per_pair"});
+  output_flags.insert(output_flags.end(), kBoundFlags.begin(), kBoundFlags.end());
   report.options = FlagValues(output_flags);
   report.solvers = std::move(comparison.solvers);
   report.shard = input.shard;
   report.num_files = input.total;
   ok = Write(&report, FLAGS_by == "sequence") && ok;
-  return ok ? kExitDone : kExitFailed;
+  // Of the whole, not of a part.
+  ok = (input.shard || AnyMotion(report)) && ok;
+  return ExitCode(ok, bounds, report.solvers);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "rigel/problems/batch.h"
 #include "rigel/problems/g2o_file.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/problems/message_groups.h"
 #include "rigel/problems/report.h"
 #include "rigel/problems/trajectory_file.h"
 #include "rigel/problems/whole_file.h"
@@ -76,6 +77,14 @@ bool Chained() {
   return FLAGS_drift || !FLAGS_kitti_trajectory.empty() || !FLAGS_tum_trajectory.empty();
 }
 
+// Notes on single pairs, on stderr with a word before each.
+void ReportNotes(const std::string& before, const std::vector<std::string>& notes,
+                 const std::vector<FramePair>& pairs) {
+  std::vector<std::string> files;
+  for (const FramePair& pair : pairs) files.push_back(pair.name);
+  for (const std::string& note : GroupMessages(notes, files)) std::cerr << before << note << "\n";
+}
+
 // Chains the motions of the report. `positions` as in ChainMotions(). False if
 // there is no trajectory, or none with the truth that --drift needs: told on stderr.
 bool Chain(const std::vector<int>& positions, EstimateReport* report) {
@@ -84,7 +93,7 @@ bool Chain(const std::vector<int>& positions, EstimateReport* report) {
   std::vector<std::string> notes;
   report->trajectories =
       ChainMotions(report->pairs, report->estimates, has_inter, positions, &notes);
-  for (const std::string& note : notes) std::cerr << "trajectory: " << note << "\n";
+  ReportNotes("trajectory: ", notes, report->pairs);
   bool any_truth = false;
   for (size_t k = 0; k < report->trajectories->size(); ++k) {
     const Trajectory& trajectory = (*report->trajectories)[k];
@@ -128,12 +137,14 @@ std::vector<OutputFlag> AllOutputs(const std::vector<Trajectory>& trajectories) 
 
 // Writes the trajectories of --kitti_trajectory or --tum_trajectory. False with a message on stderr
 // if that fails.
-bool WriteTrajectories(const std::vector<Trajectory>& trajectories, const std::string& flag,
+bool WriteTrajectories(const std::vector<Trajectory>& trajectories,
+                       const std::vector<AppliedAxes>& axes, const std::string& flag,
                        const std::string& path) {
   if (path.empty() || trajectories.empty()) return true;
   const auto format = [&](const std::vector<Pose>& poses, const Trajectory& trajectory) {
-    return flag == "tum_trajectory" ? FormatTumTrajectory(poses, trajectory.times)
-                                    : FormatKittiTrajectory(poses);
+    return flag == "tum_trajectory"
+               ? FormatTumTrajectory(poses, trajectory.times, axes[trajectory.first_pair].axes)
+               : FormatKittiTrajectory(poses);
   };
   if (IsStdout(path)) {
     if (trajectories.size() == 1) {
@@ -229,28 +240,46 @@ int Run() {
   }
   EstimateReport report;
   std::vector<int> positions;
+  std::vector<std::string> errors, failures;
+  std::vector<AppliedAxes> axes;
   for (BatchItem<Estimated>& item : items) {
     if (!item.error.empty()) {
-      std::cerr << PrintablePath(item.error) << "\n";
+      // Each that could not be read is told; of those that were many may lack the same.
+      if (item.pair.name.empty()) {
+        std::cerr << PrintablePath(item.error) << "\n";
+      } else {
+        errors.push_back(PrintablePath(item.error));
+      }
       ok = false;
       continue;
     }
+    axes.push_back(item.axes);
     positions.push_back(item.position);
     report.pairs.push_back(std::move(item.pair));
     report.matches.push_back(item.result.matches);
     report.estimates.push_back(std::move(item.result.estimate));
   }
+  ReportGrouped(errors, input.paths);
   // A shard may have nothing to report, the whole may not.
   if (report.pairs.empty() && !input.shard) return kExitFailed;
+  ReportSuggestedAxes(options, {FLAGS_solver}, axes);
   ReportUnweighedPriors(options, {FLAGS_solver}, report.pairs);
+  bool any_motion = false;
   for (size_t k = 0; k < report.pairs.size(); ++k) {
-    if (report.estimates[k].status != EstimateStatus::kSuccess) {
-      std::cerr << FailureMessage(report.pairs[k], FLAGS_solver, report.estimates[k].message)
-                << "\n";
-    }
+    const MotionEstimate& e = report.estimates[k];
+    any_motion = any_motion || e.HasMotion();
+    if (e.status == EstimateStatus::kSuccess) continue;
+    failures.push_back(FailureMessage(report.pairs[k], FLAGS_solver, e.message));
+  }
+  ReportGrouped(failures, input.paths);
+  // That is to be told of the whole, not of a part.
+  if (!any_motion && !input.shard) {
+    std::cerr << "no pair has a motion\n";
+    ok = false;
   }
 
   ReportDoubts(report);
+  for (const std::string& line : RigDoubtLines(report)) std::cerr << line << "\n";
   report.refined = estimate.refine_motion;
   // An empty shard has nothing to chain, and nothing is wrong with it.
   if (Chained() && !report.pairs.empty()) ok = Chain(positions, &report) && ok;
@@ -276,13 +305,13 @@ int Run() {
   if (!FLAGS_g2o.empty()) {
     std::vector<std::string> notes;
     const std::string graph = FormatG2o(report.pairs, report.estimates, positions, &notes);
-    for (const std::string& note : notes) std::cerr << "--g2o: " << note << "\n";
+    ReportNotes("--g2o: ", notes, report.pairs);
     ok = WriteOutput(FLAGS_g2o, graph) && ok;
   }
   if (report.trajectories) {
     const std::vector<Trajectory>& trajectories = *report.trajectories;
-    ok = WriteTrajectories(trajectories, "kitti_trajectory", FLAGS_kitti_trajectory) && ok;
-    ok = WriteTrajectories(trajectories, "tum_trajectory", FLAGS_tum_trajectory) && ok;
+    ok = WriteTrajectories(trajectories, axes, "kitti_trajectory", FLAGS_kitti_trajectory) && ok;
+    ok = WriteTrajectories(trajectories, axes, "tum_trajectory", FLAGS_tum_trajectory) && ok;
   }
   return ok ? kExitDone : kExitFailed;
 }

@@ -20,6 +20,10 @@ DEFINE_string(kitti_root, "",
 DEFINE_string(sequence, "", "with --kitti_root: the sequence, a directory of sequences/ as 06");
 DEFINE_string(euroc_root, "",
               "EuRoC: the directory mav0 of a sequence, or the one that holds mav0");
+DEFINE_double(
+    sync_tolerance_ms, -1,
+    "with --euroc_root: how far the time stamps of the two images of a frame may be apart; "
+    "by default a tenth of the frame interval");
 DEFINE_string(output, "",
               "directory that gets the match files 000020-000021.matches, ...; made if missing; "
               "one with match files is refused, but for --resume");
@@ -47,7 +51,7 @@ constexpr char kUsage[] =
     "Matches of each two consecutive frames, in all four combinations of the left and the right\n"
     "camera: each other's nearest descriptors that pass the ratio test, outliers and all. Pixels\n"
     "are undistorted. The files get times, truth and gravity where the data set has a ground\n"
-    "truth. Frames count from 0; those of EuRoC are the time stamps that both cameras have.\n";
+    "truth. Frames count from 0; those of EuRoC are the images of one time.\n";
 
 int Run() {
   SequenceMatchingOptions options;
@@ -73,6 +77,14 @@ int Run() {
   if (!kitti && is_given("sequence")) {
     return UsageError("--sequence: has no effect with --euroc_root, which is one sequence");
   }
+  EurocOptions euroc;
+  if (is_given("sync_tolerance_ms")) {
+    if (kitti) {
+      return UsageError("--sync_tolerance_ms: KITTI has one time stamp for both images of a frame");
+    }
+    euroc.sync_tolerance_ms = FLAGS_sync_tolerance_ms;
+    if (!euroc.IsValid(&error)) return UsageError("--" + error);
+  }
   if (FLAGS_output.empty()) return UsageError("--output is missing: name a directory");
   if (!ParseFeatureType(FLAGS_features, &options.features.type)) {
     return UsageError("--features=" + FLAGS_features + ": expected sift or orb");
@@ -95,7 +107,7 @@ int Run() {
 
   ImageSequence sequence;
   if (kitti ? !ReadKittiSequence(FLAGS_kitti_root, FLAGS_sequence, &sequence, &error)
-            : !ReadEurocSequence(FLAGS_euroc_root, &sequence, &error)) {
+            : !ReadEurocSequence(FLAGS_euroc_root, euroc, &sequence, &error)) {
     std::cerr << error << "\n";
     return kExitFailed;
   }

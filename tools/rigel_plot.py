@@ -7,7 +7,7 @@
   rigel_plot.py benchmark.json             rigel_benchmark --json: bars of the solvers' times
   rigel_plot.py --estimate=E --truth=T     two trajectories in KITTI's format (12 numbers a line)
                                            or TUM's (time x y z qx qy qz qw), from above: along
-                                           --vertical, y of a camera (x right, y down, z ahead)
+                                           --down, with --forward up the page
 
 Exit code: 0 done, 1 failed, 2 wrong flag, 3 matplotlib is missing.
 """
@@ -23,9 +23,12 @@ import os
 import re
 import stat
 import sys
+import unicodedata
 import zlib
 
 NO_MATPLOTLIB = 3
+# Marks that turn the direction of writing, and the byte order mark.
+MISLEADING = "\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\ufeff"
 GUARD = "RIGEL_PLOT_SECOND_PYTHON"
 
 try:
@@ -82,6 +85,18 @@ BOUND_LABEL = "Cramér-Rao bound (as a median)"
 
 class Bad(Exception):
     """A message for the user."""
+
+
+def printable(text):
+    """Text for a terminal: what it would obey in hexadecimal, as Rigel's programs show it."""
+    kept = []
+    for character in text:
+        if unicodedata.category(character) in ("Cc", "Cs", "Zl", "Zp") or character in MISLEADING:
+            raw = character.encode("utf-8", "surrogateescape")
+            kept.append("".join(f"\\x{byte:02x}" for byte in raw))
+        else:
+            kept.append(character)
+    return "".join(kept)
 
 
 def style_of(solver):
@@ -390,16 +405,60 @@ def plot_benchmark(report, stem):
              bars(solvers, series, "median time of a call [µs]", "minimal solvers"))]
 
 
-def read_trajectory(path):
-    """Positions (x, y, z) of a file in KITTI's or TUM's format."""
+def cross(a, b):
+    return tuple(a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] for k in range(3))
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def direction(text):
+    """A unit vector: +x, -z, y or three numbers. None if it is neither."""
+    axis = re.fullmatch(r"([+-]?)([xyzXYZ])", text)
+    if axis:
+        sign = -1.0 if axis[1] == "-" else 1.0
+        return tuple(sign if k == "xyz".index(axis[2].lower()) else 0.0 for k in range(3))
     try:
-        with open(path, encoding="utf-8") as file:
-            lines = [(n, l.split()) for n, l in enumerate(file, 1)
-                     if l.strip() and not l.startswith("#")]
+        v = [float(w) for w in text.split(",")]
+    except ValueError:
+        return None
+    size = math.hypot(*v)
+    return tuple(x / size for x in v) if len(v) == 3 and 0 < size < math.inf else None
+
+
+def direction_text(v):
+    """How an axis of the figure is labelled: -y, or numbers."""
+    for k in range(3):
+        if abs(v[k]) > 1 - 1e-9:
+            return ("-" if v[k] < 0 else "+") + "xyz"[k]
+    return "(" + ", ".join(f"{x:.3g}" for x in v) + ")"
+
+
+def read_trajectory(path):
+    """Positions and directions of the body's axes (rows) of a file in KITTI's or TUM's format, and
+    the (down, forward) of rigel_estimate's comment in it or None."""
+    axes = None
+    try:
+        # Not splitlines(), which breaks at more than line ends.
+        with open(path, encoding="utf-8-sig") as file:
+            lines = file.read().rstrip().split("\n")
     except (OSError, UnicodeDecodeError) as error:
         raise Bad(f"{path}: cannot be read: {error}") from error
-    points = []
-    for number, words in lines:
+    points, turns = [], []
+    skipped = 0  # the first line that is blank or a comment
+    kitti = 0  # the first line that says no time: line k is that of frame k
+    for number, line in enumerate(lines, 1):
+        said = re.match(r"# body: down (\S+), forward (\S+)$", line)
+        if said and direction(said[1]) and direction(said[2]):
+            axes = direction(said[1]), direction(said[2])
+            continue
+        words = line.split()
+        if not words or line.startswith("#"):
+            skipped = skipped or number
+            continue
+        if len(words) == 12:
+            kitti = kitti or number
         if len(words) not in (8, 12):
             raise Bad(f"{path}:{number}: {len(words)} numbers, expected 12 (KITTI) or 8 (TUM)")
         try:
@@ -408,30 +467,98 @@ def read_trajectory(path):
             raise Bad(f"{path}:{number}: {error}") from error
         if not all(map(math.isfinite, values)):
             raise Bad(f"{path}:{number}: a number is not finite")
-        points.append((values[3], values[7], values[11]) if len(words) == 12
-                      else tuple(values[1:4]))
+        if len(words) == 12:
+            points.append((values[3], values[7], values[11]))
+            turns.append([values[k:12:4] for k in range(3)])
+        else:
+            points.append(tuple(values[1:4]))
+            turns.append(axes_of_quaternion(*values[4:8]))
     if not points:
         raise Bad(f"{path}: there is no pose in it")
-    return points
+    if kitti and skipped:
+        raise Bad(f"{path}:{skipped}: a blank line or a comment, expected that of frame "
+                  f"{skipped - 1}: every line is that of a frame")
+    return points, turns, axes
 
 
-def plot_trajectory(estimate_path, truth_path, vertical):
+def axes_of_quaternion(x, y, z, w):
+    """The columns of its rotation matrix."""
+    n = x * x + y * y + z * z + w * w
+    s = 2 / n if n > 0 else 0
+    return [(1 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)),
+            (s * (x * y - w * z), 1 - s * (x * x + z * z), s * (y * z + w * x)),
+            (s * (x * z + w * y), s * (y * z - w * x), 1 - s * (x * x + y * y))]
+
+
+def driven_axes(points, turns):
+    """(down, forward) of the body by where it drives: along z, a camera, with y down; else z up."""
+    driven = [0.0] * 3
+    for before, after, turn in zip(points, points[1:], turns):
+        step = [b - a for a, b in zip(before, after)]
+        for k in range(3):
+            driven[k] += dot(step, turn[k])
+    main = max(range(3), key=lambda k: abs(driven[k]))
+    if not any(driven) or main == 2:
+        return (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+    return (0.0, 0.0, -1.0), tuple(1.0 if k == main else 0.0 for k in range(3))
+
+
+def in_world(axes, turn):
+    """Down and forward of the body at a pose, as the nearest axes of the trajectories' frame."""
+    result = []
+    for axis in axes:
+        v = [sum(a * t[k] for a, t in zip(axis, turn)) for k in range(3)]
+        for done in result:
+            v = [0.0 if d else x for x, d in zip(v, done)]
+        main = max(range(3), key=lambda k: abs(v[k]))
+        result.append(tuple(math.copysign(1.0, v[k]) if k == main else 0.0 for k in range(3)))
+    return result
+
+
+def view_of(tracks, down, forward):
+    """Right and up of the page, in the frame of the trajectories."""
+    said = [axes for _, (_, _, axes), _, _, _ in tracks if axes]
+    points, turns, _ = tracks[0][1]
+    default = said[0] if said else in_world(driven_axes(points, turns), turns[0])
+    if down is None and forward is None and not said:
+        print(f"rigel_plot.py: --down={direction_text(default[0])} "
+              f"--forward={direction_text(default[1])}: by where the body drives; state them if "
+              "they are others", file=sys.stderr)
+    if down is None:
+        down = default[0]
+        if forward and abs(dot(down, forward)) > 0.866:
+            raise Bad("--forward: is along down; state --down, too")
+    if forward is None:
+        # Any axis across a down that was stated alone, that of the default if it is.
+        axes = [default[1]] + [tuple(float(k == n) for n in range(3)) for k in (2, 0, 1)]
+        forward = next(a for a in axes if abs(dot(a, down)) < 0.5)
+    along = dot(down, forward)
+    forward = tuple(f - along * d for f, d in zip(forward, down))
+    size = math.hypot(*forward)
+    if size < 0.5:
+        raise Bad("--forward: is within 30 degrees of the line of --down")
+    forward = tuple(f / size for f in forward)
+    return cross(down, forward), forward
+
+
+def plot_trajectory(estimate_path, truth_path, down, forward):
     tracks = [("truth", truth_path, BLACK, ":", 2.0), ("estimate", estimate_path, RED, "-", 1.3)]
     tracks = [(n, read_trajectory(p), c, l, w) for n, p, c, l, w in tracks if p]
-    across, ahead = [k for k in range(3) if "xyz"[k] != vertical]
+    right, up = view_of(tracks, down, forward)
     figure, axes = new_figure(1, 1, 6.5, 6.5)
     axis = axes[0][0]
-    for name, points, color, line, width in tracks:
-        axis.plot([p[across] for p in points], [p[ahead] for p in points], color=color, ls=line,
-                  lw=width, label=name)
-        axis.plot(points[-1][across], points[-1][ahead], marker="s", color=color, markersize=5)
-    start = tracks[0][1][0]
-    axis.plot(start[across], start[ahead], marker="o", color=BLUE, ls="", markersize=6,
+    for name, (points, _, _), color, line, width in tracks:
+        axis.plot([dot(p, right) for p in points], [dot(p, up) for p in points], color=color,
+                  ls=line, lw=width, label=name)
+        axis.plot(dot(points[-1], right), dot(points[-1], up), marker="s", color=color,
+                  markersize=5)
+    start = tracks[0][1][0][0]
+    axis.plot(dot(start, right), dot(start, up), marker="o", color=BLUE, ls="", markersize=6,
               label="start")
     axis.set_aspect("equal", adjustable="datalim")
     axis.grid(True, color="#dddddd", lw=0.6)
-    axis.set_xlabel("xyz"[across] + " [m]", fontsize=9)
-    axis.set_ylabel("xyz"[ahead] + " [m]", fontsize=9)
+    axis.set_xlabel("to the right, " + direction_text(right) + " [m]", fontsize=9)
+    axis.set_ylabel("forward, " + direction_text(up) + " [m]", fontsize=9)
     axis.set_title("trajectory from above (squares: ends)", fontsize=10)
     axis.legend(frameon=False, fontsize=9)
     figure.tight_layout()
@@ -467,7 +594,7 @@ def write_whole(path, data):
     one with its mode and owner, all else is written to."""
     place = os.path.realpath(path)
     status = os.stat(path) if os.path.exists(path) else None
-    if status and os.path.samestat(status, os.fstat(sys.stdout.fileno())):
+    if status and sys.stdout and os.path.samestat(status, os.fstat(sys.stdout.fileno())):
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()
         return
@@ -516,7 +643,7 @@ def save(figure, directory, name, dpi):
 
 def read_json(path):
     try:
-        with open(path, encoding="utf-8") as file:
+        with open(path, encoding="utf-8-sig") as file:
             value = json.load(file)
     except (OSError, ValueError) as error:
         raise Bad(f"{path}: cannot be read: {error}") from error
@@ -613,7 +740,7 @@ def inputs_of(paths):
                 if report.get("format") not in FORMATS:
                     raise Bad(f"{file}: its format is {report.get('format')!r}")
             except Bad as error:
-                print(f"rigel_plot.py: left out: {error}", file=sys.stderr)
+                print(printable(f"rigel_plot.py: left out: {error}"), file=sys.stderr)
                 continue
             reports.append((file, report))
         if len(reports) == before:
@@ -662,11 +789,12 @@ def run(arguments):
             what = " ".join(repr(error).split())[:200]
             raise Bad(f"{path}: not of its format {kind!r}: {what}") from error
     if arguments.estimate or arguments.truth:
-        add(plot_trajectory(arguments.estimate, arguments.truth, arguments.vertical), "Trajectory")
+        add(plot_trajectory(arguments.estimate, arguments.truth, arguments.down,
+                            arguments.forward), "Trajectory")
     if arguments.html:
         write_html(arguments.html, sections["claims"] + sections["other"])
-        print(f"wrote {arguments.html}", file=sys.stderr)
-    print(f"wrote {written} figures (PNG and SVG) to {directory}", file=sys.stderr)
+        print(printable(f"wrote {arguments.html}"), file=sys.stderr)
+    print(printable(f"wrote {written} figures (PNG and SVG) to {directory}"), file=sys.stderr)
 
 
 def main():
@@ -678,9 +806,26 @@ def main():
     parser.add_argument("--dpi", type=int, default=130, help="resolution of the PNG files")
     parser.add_argument("--estimate", help="trajectory to draw")
     parser.add_argument("--truth", help="true trajectory to draw")
-    parser.add_argument("--vertical", choices="xyz", default="y",
-                        help="axis of the trajectories that is looked along; default y")
+    parser.add_argument("--down", help="which way is down in the frame of the trajectories, of "
+                        "rigel_estimate's the body's at the start: +y, -z, ... or three numbers "
+                        "x,y,z; default: as a TUM file of rigel_estimate says, else by where the "
+                        "body drives: along its z, as a camera does, +y of it, else -z")
+    parser.add_argument("--forward", help="the same of forward, which is up the page")
+    parser.add_argument("--vertical", choices="xyz", help="older name: y is --down=+y "
+                        "--forward=+z, z is --down=-z --forward=+y, x is --down=-x --forward=+z")
     arguments = parser.parse_args()
+    if arguments.vertical and (arguments.down or arguments.forward):
+        parser.error("--vertical: is another name of --down and --forward")
+    if arguments.vertical:
+        arguments.down, arguments.forward = {
+            "x": ("-x", "+z"), "y": ("+y", "+z"), "z": ("-z", "+y")}[arguments.vertical]
+    for name in ("down", "forward"):
+        text = getattr(arguments, name)
+        if text is None:
+            continue
+        setattr(arguments, name, direction(text))
+        if getattr(arguments, name) is None:
+            parser.error(f"--{name}={text}: expected +x, -x, +y, -y, +z, -z or three numbers x,y,z")
     if not 10 <= arguments.dpi <= 1200:
         parser.error("--dpi: expected 10 to 1200")
     if not arguments.inputs and not arguments.estimate and not arguments.truth:
@@ -690,7 +835,7 @@ def main():
     try:
         run(arguments)
     except Bad as error:
-        print(f"rigel_plot.py: {error}", file=sys.stderr)
+        print(printable(f"rigel_plot.py: {error}"), file=sys.stderr)
         return 1
     return 0
 

@@ -15,6 +15,7 @@
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/parallel.h"
 #include "rigel/problems/synthetic.h"
+#include "rigel/problems/whole_file.h"
 #include "rigel/tools/tool.h"
 
 DEFINE_string(
@@ -93,11 +94,8 @@ std::vector<std::string> OtherMatchFiles(const std::string& directory, int num_p
   fs::directory_iterator entry(directory, *code);
   for (; !*code && entry != fs::directory_iterator(); entry.increment(*code)) {
     const std::string name = entry->path().filename().string();
-    const std::string ending = ".matches";
     std::error_code ignored;
-    if (name.size() > ending.size() &&
-        name.compare(name.size() - ending.size(), ending.size(), ending) == 0 &&
-        !IsOwn(name, num_pairs) && !entry->is_directory(ignored)) {
+    if (IsMatchFileName(name) && !IsOwn(name, num_pairs) && !entry->is_directory(ignored)) {
       others.push_back(name);
     }
   }
@@ -197,6 +195,9 @@ int Run() {
            "empty the directory or name another\n";
     return kExitFailed;
   }
+  RemoveLeftOvers(FLAGS_output, [](const std::string& name) {
+    return std::filesystem::path(name).extension() == ".matches";
+  });
   error = WriteFiles(options, motions, num_pairs);
   if (!error.empty()) {
     std::cerr << error << "\n";

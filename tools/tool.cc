@@ -14,17 +14,20 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <sstream>
+#include <system_error>
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
 #include "rigel/problems/csv.h"
 #include "rigel/problems/exception_message.h"
+#include "rigel/problems/input_file.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/output_place.h"
+#include "rigel/problems/version.h"
 #include "rigel/problems/whole_file.h"
-#include "rigel/tools/version.h"
 
 // gflags leaves the process through this pointer, with code 1; it is not in a public header.
 namespace google {
@@ -146,7 +149,8 @@ void PrintHelp(const std::string& usage) {
     }
     flush();
   }
-  std::cout << "\nExit code: 0 done, 1 failed, 2 wrong flag.\n";
+  std::cout
+      << "\nExit code: 0 done, 1 failed, 2 wrong flag, 3 a bound that a flag set was missed.\n";
 }
 
 }  // namespace
@@ -175,7 +179,7 @@ void ParseFlags(const std::string& usage, int* argc, char*** argv) {
   FLAGS_minloglevel = google::GLOG_FATAL;
   google::InitGoogleLogging((*argv)[0]);
   gflags::SetUsageMessage(usage);
-  gflags::SetVersionString(RIGEL_VERSION);
+  gflags::SetVersionString(RigelVersion());
   // The name of the program, which --version prints before the flags are parsed.
   gflags::SetArgv(*argc, const_cast<const char**>(*argv));
   google::gflags_exitfunc = &ExitUsage;
@@ -187,7 +191,7 @@ void ParseFlags(const std::string& usage, int* argc, char*** argv) {
       std::exit(FlushStdout() ? kExitDone : kExitFailed);
     }
     if (argument == "--version" || argument == "-version") {
-      std::cout << ProgramName() << " " << RIGEL_VERSION << "\n";
+      std::cout << ProgramName() << " " << RigelVersion() << "\n";
       std::exit(FlushStdout() ? kExitDone : kExitFailed);
     }
   }
@@ -304,18 +308,22 @@ bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
 }
 
 bool ReadInput(const std::string& path, std::string* text) {
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-  if (file == nullptr) {
-    std::cerr << path << ": cannot be opened: " << std::strerror(errno) << "\n";
+  constexpr size_t kMaxBytes = size_t{1} << 30;
+  InputBytes bytes;
+  std::string error;
+  if (!ReadInputFile(path, &bytes, &error, kMaxBytes)) {
+    std::cerr << error << "\n";
     return false;
   }
-  text->clear();
-  char buffer[1 << 16];
-  for (size_t n; (n = std::fread(buffer, 1, sizeof(buffer), file)) > 0;) text->append(buffer, n);
-  const bool ok = std::ferror(file) == 0;
-  if (!ok) std::cerr << path << ": cannot be read: " << std::strerror(errno) << "\n";
-  std::fclose(file);
-  return ok;
+  std::string_view input = bytes.text();
+  int64_t line;
+  if (!CheckText(&input, &line, &error)) {
+    std::cerr << PrintablePath(InputName(path)) << (line > 0 ? ":" + std::to_string(line) : "")
+              << ": " << error << ", expected UTF-8 text\n";
+    return false;
+  }
+  *text = std::string(input);
+  return true;
 }
 
 std::vector<std::string> SplitCommas(const std::string& text) {

@@ -1,7 +1,8 @@
 // What the rigel_* programs share: flags, exit codes, output.
 //
-// Exit codes: 0 done; 1 a file could not be read or written, nothing to read, or no truth where it
-// is needed; 2 a wrong flag or value. Results go to stdout, talk to stderr.
+// Exit codes: 0 done; 1 a file could not be read or written, nothing to read, no pair with a motion,
+// or no truth where it is needed; 2 a wrong flag or value; 3 a bound that a flag set was missed.
+// Results go to stdout, talk to stderr.
 #ifndef RIGEL_TOOLS_TOOL_H_
 #define RIGEL_TOOLS_TOOL_H_
 
@@ -15,6 +16,7 @@ namespace rigel {
 inline constexpr int kExitDone = 0;
 inline constexpr int kExitFailed = 1;
 inline constexpr int kExitUsage = 2;
+inline constexpr int kExitBoundMissed = 3;
 
 // The whole of main(): parses the flags, runs the program and returns its exit code. What would end
 // the process otherwise ends in one line on stderr and kExitFailed: no memory left, an output to a
@@ -62,7 +64,8 @@ bool OutputsDiffer(const std::vector<OutputFlag>& outputs, std::string* error);
 bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
                         const std::vector<std::string>& inputs, std::string* error);
 
-// Reads a whole file. False with a message on stderr if that fails.
+// Reads a text file (rigel/problems/input_file.h) of at most 1 GiB without its byte order mark. False
+// with a message on stderr if that fails.
 bool ReadInput(const std::string& path, std::string* text);
 
 // Splits at commas; empty parts are dropped.

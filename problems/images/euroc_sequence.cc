@@ -3,14 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <system_error>
 
 #include <yaml-cpp/yaml.h>
 
-#include "rigel/problems/images/text_lines.h"
+#include "rigel/problems/csv.h"
+#include "rigel/problems/images/stereo_stamps.h"
+#include "rigel/problems/input_file.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/problems/printable.h"
+#include "rigel/problems/text_lines.h"
 
 namespace rigel {
 namespace {
@@ -106,19 +112,32 @@ ImageCamera ParseCamera(const YAML::Node& sensor) {
 }
 
 bool ReadSensor(const std::string& path, ImageCamera* camera, std::string* error) {
-  try {
-    *camera = ParseCamera(YAML::LoadFile(path));
-    return true;
-  } catch (const YAML::BadFile&) {
-    *error = PrintablePath(path) + ": cannot be opened";
-  } catch (const YAML::Exception& exception) {
-    *error = PrintablePath(path) +
-             (exception.mark.is_null() ? "" : ":" + std::to_string(exception.mark.line + 1)) +
-             ": " + exception.msg;
-  } catch (const std::exception& exception) {
-    *error = PrintablePath(path) + ": " + exception.what();
+  constexpr size_t kMaxBytes = size_t{1} << 20;  // of which EuRoC's has one in a thousand
+  InputBytes bytes;
+  if (!ReadInputFile(path, &bytes, error, kMaxBytes)) return false;
+  std::string_view text = bytes.text();
+  int64_t line;
+  std::string what;
+  if (!CheckText(&text, &line, &what)) {
+    what += ", expected UTF-8 text";
+  } else {
+    try {
+      *camera = ParseCamera(YAML::Load(std::string(text)));
+      return true;
+    } catch (const YAML::Exception& exception) {
+      if (!exception.mark.is_null()) line = exception.mark.line + 1;
+      what = exception.msg;
+    } catch (const std::exception& exception) {
+      what = exception.what();
+    }
   }
+  *error = Printable(path + (line > 0 ? ":" + std::to_string(line) : "") + ": " + what);
   return false;
+}
+
+// Whether a name from a file stays below the folder that it is joined to.
+bool StaysInside(const fs::path& name) {
+  return name.is_relative() && std::find(name.begin(), name.end(), "..") == name.end();
 }
 
 using Images = std::map<int64_t, std::string>;  // time stamp, path
@@ -133,6 +152,12 @@ bool ReadImageList(const fs::path& camera, Images* images, std::string* error) {
     if (words.size() != 2 || !ParseTimestamp(words[0], &time) || words[1].empty()) {
       *error = Where(path, line) + ": " + Quoted(line.text) +
                ", expected a time stamp in nanoseconds, a comma and a file name";
+      return false;
+    }
+    if (!StaysInside(words[1])) {
+      *error = Where(path, line) + ": " + Quoted(words[1]) +
+               " leads out of the folder, expected a file in " +
+               PrintablePath((camera / "data").string());
       return false;
     }
     if (!images->emplace(time, (camera / "data" / words[1]).string()).second) {
@@ -214,15 +239,77 @@ std::string LeftOut(const std::string& camera, size_t left_out, size_t all,
                     const std::string& other) {
   if (left_out == 0) return "";
   return camera + ": " + std::to_string(left_out) + " of " + std::to_string(all) +
-         " images are left out: no image of " + other + " has their time stamp";
+         " images are left out: no image of " + other + " is of their time";
+}
+
+Stamps StampsOf(const Images& images) {
+  Stamps stamps;
+  for (const auto& [time, path] : images) stamps.push_back(time);
+  return stamps;
+}
+
+std::string Milliseconds(int64_t nanoseconds) {
+  return CsvNumber(static_cast<double>(nanoseconds) * 1e-6) + " ms";
+}
+
+// The frames of the images of both cameras. False, with what is wrong, if there are none.
+bool PairImages(const Images (&images)[2], const EurocOptions& options, ImageSequence* sequence,
+                Stamps* times, std::string* what) {
+  const Stamps stamps[2] = {StampsOf(images[0]), StampsOf(images[1])};
+  // Doubles of more than the largest integer do not become one.
+  constexpr double kMaxTolerance = 9e18;
+  const int64_t tolerance = options.sync_tolerance_ms
+                                ? static_cast<int64_t>(std::min(
+                                      std::round(*options.sync_tolerance_ms * 1e6), kMaxTolerance))
+                                : DefaultSyncTolerance(stamps[0]);
+  const std::string within = Milliseconds(tolerance) +
+                             (options.sync_tolerance_ms ? "" : ", a tenth of the frame interval") +
+                             " (--sync_tolerance_ms)";
+  int64_t largest = 0;
+  for (const auto& [k, partner] : PairStamps(stamps[0], stamps[1], tolerance)) {
+    const int64_t time = stamps[0][k], other = stamps[1][partner];
+    largest = std::max(largest, std::abs(other - time));
+    times->push_back(time);
+    ImageFrame frame;
+    frame.images = {images[0].at(time), images[1].at(other)};
+    frame.time = static_cast<double>(time) * kSecondsPerNanosecond;
+    sequence->frames.push_back(std::move(frame));
+  }
+  if (times->empty()) {
+    int64_t least = std::numeric_limits<int64_t>::max();
+    for (const auto& [k, partner] : PairStamps(stamps[0], stamps[1], least)) {
+      least = std::min(least, std::abs(stamps[1][partner] - stamps[0][k]));
+    }
+    *what = "no image of cam1 is of the time of one of cam0, within " + within +
+            "; the nearest are " + Milliseconds(least) + " apart";
+    return false;
+  }
+  if (largest > 0) {
+    sequence->sync_tolerance =
+        options.sync_tolerance_ms ? CsvNumber(*options.sync_tolerance_ms) : "default";
+    sequence->notes.push_back("time stamps of cam0 and cam1 differ by up to " +
+                              Milliseconds(largest) + ", within " + within);
+  }
+  return true;
 }
 
 }  // namespace
 
-bool ReadEurocSequence(const std::string& root, ImageSequence* sequence, std::string* error) {
+bool EurocOptions::IsValid(std::string* error) const {
+  if (!sync_tolerance_ms || (std::isfinite(*sync_tolerance_ms) && *sync_tolerance_ms >= 0)) {
+    return true;
+  }
+  *error = "sync_tolerance_ms: expected a number from 0";
+  return false;
+}
+
+bool ReadEurocSequence(const std::string& root, const EurocOptions& options,
+                       ImageSequence* sequence, std::string* error) {
+  if (!options.IsValid(error)) return false;
   const fs::path mav =
       IsDirectory(fs::path(root) / "mav0") ? fs::path(root) / "mav0" : fs::path(root);
-  if (!IsDirectory(mav / "cam0") || !IsDirectory(mav / "cam1")) {
+  const auto camera_folder = [&](int k) { return mav / ("cam" + std::to_string(k)); };
+  if (!IsDirectory(camera_folder(0)) || !IsDirectory(camera_folder(1))) {
     *error = PrintablePath(root) +
              ": expected EuRoC's folder mav0 with cam0 and cam1, or the folder that holds mav0";
     return false;
@@ -233,31 +320,27 @@ bool ReadEurocSequence(const std::string& root, ImageSequence* sequence, std::st
 
   Images images[2];
   for (int k = 0; k < 2; ++k) {
-    const fs::path camera = mav / ("cam" + std::to_string(k));
+    const fs::path camera = camera_folder(k);
     result.cameras.emplace_back();
     if (!ReadSensor((camera / "sensor.yaml").string(), &result.cameras.back(), error) ||
         !ReadImageList(camera, &images[k], error)) {
       return false;
     }
   }
-  std::vector<int64_t> times;
-  for (const auto& [time, path] : images[0]) {
-    const auto partner = images[1].find(time);
-    if (partner == images[1].end()) continue;
-    times.push_back(time);
-    ImageFrame frame;
-    frame.images = {path, partner->second};
-    frame.time = static_cast<double>(time) * kSecondsPerNanosecond;
-    result.frames.push_back(std::move(frame));
+  for (int k = 2; IsDirectory(camera_folder(k)); ++k) {
+    result.notes.push_back(PrintablePath(camera_folder(k).string()) +
+                           ": not used; the rig is cam0 and cam1");
   }
-  if (times.empty()) {
-    *error = PrintablePath(mav.string()) + ": no image of cam0 has a time stamp of cam1";
+  Stamps times;
+  std::string what;
+  if (!PairImages(images, options, &result, &times, &what)) {
+    *error = PrintablePath(mav.string()) + ": " + what;
     return false;
   }
   for (int k = 0; k < 2; ++k) {
-    result.notes.push_back(
-        LeftOut(PrintablePath((mav / ("cam" + std::to_string(k)) / "data.csv").string()),
-                images[k].size() - times.size(), images[k].size(), k == 0 ? "cam1" : "cam0"));
+    result.notes.push_back(LeftOut(PrintablePath((camera_folder(k) / "data.csv").string()),
+                                   images[k].size() - times.size(), images[k].size(),
+                                   k == 0 ? "cam1" : "cam0"));
   }
 
   const std::string truth_path = (mav / "state_groundtruth_estimate0" / "data.csv").string();

@@ -90,7 +90,11 @@ struct ImageSequence {
   // Where a camera's image of a frame that is not there would be; empty if all are there.
   std::function<std::string(int frame, int camera)> image_path;
   Eigen::Vector3d world_down = Eigen::Vector3d::UnitY();  // unit; the world of world_from_body
-  // What a user should know and is no error: frames left out, frames without ground truth.
+  // Where images of one frame differ in time: how far they may, "default" or milliseconds. Frames
+  // count otherwise with another.
+  std::string sync_tolerance;
+  // What a user should know and is no error: frames left out, frames without ground truth, cameras
+  // that are not used, how far the cameras' time stamps are apart.
   std::vector<std::string> notes;
 };
 

@@ -9,9 +9,10 @@
 #include <set>
 #include <system_error>
 
-#include "rigel/problems/images/text_lines.h"
 #include "rigel/problems/kitti_poses.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/problems/printable.h"
+#include "rigel/problems/text_lines.h"
 
 namespace rigel {
 namespace {
@@ -125,7 +126,7 @@ bool ReadCalibration(const std::string& path, const std::array<int, 2>& numbers,
 
 bool ReadTimes(const std::string& path, std::vector<double>* times, std::string* error) {
   std::vector<TextLine> lines;
-  if (!ReadTextLines(path, &lines, error)) return false;
+  if (!ReadFrameLines(path, &lines, error)) return false;
   for (const TextLine& line : lines) {
     double time;
     if (!ParseFinite(line.text, &time)) {
@@ -135,6 +136,20 @@ bool ReadTimes(const std::string& path, std::vector<double>* times, std::string*
     times->push_back(time);
   }
   return true;
+}
+
+// The cameras' folders beside those that are used; empty if there are none.
+std::string Unused(const fs::path& directory, const std::array<int, 2>& used) {
+  constexpr int kCameras = 10;  // of which a folder may be named
+  std::string names;
+  for (int k = 0; k < kCameras; ++k) {
+    const std::string name = "image_" + std::to_string(k);
+    if (k == used[0] || k == used[1] || !IsDirectory(directory / name)) continue;
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  if (names.empty()) return "";
+  return PrintablePath(directory.string()) + ": not used: " + names + "; the rig is image_" +
+         std::to_string(used[0]) + " and image_" + std::to_string(used[1]);
 }
 
 // What a file with a line a frame says about a sequence with more frames; empty if it has enough.
@@ -168,6 +183,7 @@ bool ReadKittiSequence(const std::string& root, const std::string& name, ImageSe
   if (!ReadCalibration((directory / "calib.txt").string(), cameras, &result.cameras, error)) {
     return false;
   }
+  result.notes.push_back(Unused(directory, cameras));
   std::set<int> frames;
   for (const int camera : cameras) {
     if (!AddFrames(folder(camera), &frames, error)) return false;

@@ -18,6 +18,9 @@
 
 namespace rigel {
 
+// Line k of times.txt and of the poses is that of frame k: a blank line or a comment among them is
+// refused. Cameras beside the two that are used are told in the notes.
+//
 // Frames count to the highest number of an image, 10 million at most; there are those of which a
 // camera has an image.
 // False with a message that names the file, and the line where there is one.

@@ -14,9 +14,10 @@
 
 #include "rigel/problems/csv.h"
 #include "rigel/problems/exception_message.h"
-#include "rigel/problems/images/text_lines.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/parallel.h"
+#include "rigel/problems/printable.h"
+#include "rigel/problems/text_lines.h"
 #include "rigel/problems/whole_file.h"
 
 namespace rigel {
@@ -40,10 +41,6 @@ struct FrameIndices {
 bool Exists(const std::string& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
-}
-
-bool EndsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
 // The features of a frame while pairs need them: extracted by the first that asks, forgotten after
@@ -145,6 +142,9 @@ std::string SettingsText(const SequenceMatchingOptions& options, const ImageSequ
           any([](const ImageFrame& frame) { return frame.world_from_body.has_value(); });
   text +=
       std::string("times ") + any([](const ImageFrame& frame) { return frame.time.has_value(); });
+  if (!sequence.sync_tolerance.empty()) {
+    text += "sync_tolerance_ms " + sequence.sync_tolerance + "\n";
+  }
   for (size_t k = 0; k < sequence.cameras.size(); ++k) {
     const RigCamera& camera = sequence.cameras[k].camera;
     const PinholeCamera& c = camera.intrinsics;
@@ -171,16 +171,16 @@ bool SameSettings(const fs::path& path, const std::string& text, std::string* er
     return false;
   }
   size_t begin = 0;
-  for (size_t k = 0; begin < text.size(); ++k) {
-    const size_t end = text.find('\n', begin);
+  for (size_t k = 0; begin < text.size() || k < lines.size(); ++k) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
     const std::string now = text.substr(begin, end - begin);
     if (k >= lines.size() || lines[k].text != now) {
       *error = PrintablePath(path.string()) + ": the match files beside it were made with " +
                (k < lines.size() ? Quoted(lines[k].text) : "other settings") + ", this run has " +
-               Quoted(now) + "; name another directory";
+               (now.empty() ? "no such line" : Quoted(now)) + "; name another directory";
       return false;
     }
-    begin = end + 1;
+    begin = std::min(end + 1, text.size());
   }
   return true;
 }
@@ -202,7 +202,7 @@ bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequenc
     const std::string name = entry->path().filename().string();
     std::error_code ignored;
     if (entry->is_directory(ignored)) continue;
-    if (EndsWith(name, kSuffix)) {
+    if (IsMatchFileName(name)) {
       (own.count(name) > 0 ? there : others).insert(name);
     }
   }
@@ -231,7 +231,7 @@ bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequenc
     return false;
   }
   RemoveLeftOvers(directory, [](const std::string& name) {
-    return EndsWith(name, kSuffix) || name == kSettingsName;
+    return IsMatchFileName(name) || name == kSettingsName;
   });
   for (const std::string& name : there) {
     FramePair ignored;

@@ -61,6 +61,50 @@ TEST(FramePair, RejectsAPixelThatIsNotFinite) {
   }
 }
 
+TEST(FramePair, RejectsTimesTruthAndNoiseThatMakeNoSense) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  const auto error_of = [](const FramePair& pair) {
+    std::string error;
+    EXPECT_FALSE(pair.IsValid(&error));
+    return error;
+  };
+  for (const double bad : {nan, inf, -inf}) {
+    FramePair pair = MakePair();
+    pair.time1 = bad;
+    EXPECT_THAT(error_of(pair), HasSubstr("time"));
+    pair = MakePair();
+    pair.time2 = bad;
+    EXPECT_THAT(error_of(pair), HasSubstr("time"));
+    pair = MakePair();
+    pair.truth = Pose();
+    pair.truth->t.y() = bad;
+    EXPECT_THAT(error_of(pair), HasSubstr("truth"));
+  }
+  for (const double bad : {0.0, -1.0, nan, inf}) {
+    FramePair pair = MakePair();
+    pair.noise_px = bad;
+    EXPECT_THAT(error_of(pair), HasSubstr("noise_px"));
+  }
+  FramePair pair = MakePair();
+  pair.truth = Pose();
+  pair.truth->R(0, 0) = 1.01;
+  EXPECT_THAT(error_of(pair), HasSubstr("truth"));
+  pair.truth->R = -Eigen::Matrix3d::Identity();
+  EXPECT_THAT(error_of(pair), HasSubstr("truth"));
+  pair = MakePair();
+  pair.prior.axis = Eigen::Vector3d(0, 2, 0);
+  EXPECT_THAT(error_of(pair), HasSubstr("axis"));
+  // A pair may go back in time.
+  pair = MakePair();
+  pair.time1 = 2.0;
+  pair.time2 = -1.0;
+  pair.truth = Pose();
+  pair.noise_px = 0.5;
+  std::string error;
+  EXPECT_TRUE(pair.IsValid(&error)) << error;
+}
+
 TEST(FramePair, AMatchIsIntraIfItsCamerasAreTheSame) {
   const FramePair pair = MakePair();
   EXPECT_TRUE(pair.matches[0].IsIntra());

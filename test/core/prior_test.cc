@@ -1,5 +1,10 @@
 #include "rigel/core/prior.h"
 
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 namespace rigel {
@@ -22,6 +27,53 @@ TEST(Prior, HasPriorAsksForWhatTheKindNeedsAndNoMore) {
   EXPECT_FALSE(HasPrior(prior, PriorKind::kPlanar));
   prior.normal = y;
   EXPECT_TRUE(HasPrior(prior, PriorKind::kPlanar));
+}
+
+TEST(Prior, DirectionsAreUnitVectorsAndSigmasPositive) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  const auto error_of = [](const MotionPrior& prior) {
+    std::string error = "valid";
+    return prior.IsValid(&error) ? std::string("valid") : error;
+  };
+  EXPECT_EQ(error_of(MotionPrior()), "valid");
+  const std::pair<std::optional<Eigen::Vector3d> MotionPrior::*, const char*> directions[] = {
+      {&MotionPrior::gravity1, "gravity1"},
+      {&MotionPrior::gravity2, "gravity2"},
+      {&MotionPrior::axis, "axis"},
+      {&MotionPrior::normal, "normal"}};
+  for (const auto& [member, name] : directions) {
+    for (const double bad : {0.0, 0.99, 2.0, nan, inf}) {
+      MotionPrior prior;
+      prior.*member = Eigen::Vector3d(0, bad, 0);
+      EXPECT_NE(error_of(prior).find(name), std::string::npos) << bad;
+    }
+    MotionPrior prior;
+    prior.*member = Eigen::Vector3d(0, 0, 1.0 - 0.9 * kMaxUnitError);
+    EXPECT_EQ(error_of(prior), "valid");
+  }
+  const std::pair<std::optional<double> MotionPrior::*, const char*> sigmas[] = {
+      {&MotionPrior::gravity_sigma, "gravity_sigma"},
+      {&MotionPrior::axis_sigma, "axis_sigma"},
+      {&MotionPrior::normal_sigma, "normal_sigma"}};
+  for (const auto& [member, name] : sigmas) {
+    for (const double bad : {0.0, -1e-3, nan, inf}) {
+      MotionPrior prior;
+      prior.*member = bad;
+      EXPECT_NE(error_of(prior).find(name), std::string::npos) << bad;
+    }
+  }
+  for (const double bad : {-1.0, nan, inf}) {
+    MotionPrior prior;
+    prior.distance = bad;
+    EXPECT_NE(error_of(prior).find("distance"), std::string::npos);
+    prior = MotionPrior();
+    prior.distance_sigma = bad;
+    EXPECT_NE(error_of(prior).find("distance_sigma"), std::string::npos);
+  }
+  MotionPrior still;
+  still.distance = 0.0;
+  EXPECT_EQ(error_of(still), "valid");
 }
 
 }  // namespace

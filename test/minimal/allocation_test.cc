@@ -243,6 +243,7 @@ struct RigSolver {
   int num_data() const { return grouped->size(); }
   int sample_size() const { return info->sample_size; }
   bool Draw(Random* random, int* sample) const { return sampler->Draw(random, sample); }
+  double Work(int num_solutions) const { return 1.0 + num_solutions; }
   int MinimalSolver(const int* sample, Solutions* solutions) const {
     return info->solve(*matches, sample, solutions);
   }

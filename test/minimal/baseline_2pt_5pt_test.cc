@@ -278,6 +278,11 @@ TEST(TwoPointAckermann, DegenerateSamples) {
   problem.prior.normal = Eigen::Vector3d::UnitZ();
   Solutions solutions;
   EXPECT_EQ(Solve2ptAckermann(problem.Prepare(PriorKind::kPlanar), kTwo, &solutions), 0);
+  // Nobody says where it is.
+  problem = MakeRandomProblem(1, AckermannOptions(InterPairs()));
+  EXPECT_GT(Solve2ptAckermann(problem.Prepare(PriorKind::kPlanar), kTwo, &solutions), 0);
+  problem.prior.forward.reset();
+  EXPECT_EQ(Solve2ptAckermann(problem.Prepare(PriorKind::kPlanar), kTwo, &solutions), 0);
 }
 
 TEST(FivePointPlusOne, FindsTheTruthWithItsScale) {

@@ -114,6 +114,7 @@ inline RandomProblem MakeRandomProblem(uint64_t seed, const ProblemOptions& opti
   problem.prior.gravity2 = problem.truth.R * near_y;
   problem.prior.axis = axis;
   problem.prior.normal = axis;
+  problem.prior.forward = Eigen::Vector3d::UnitZ();
 
   for (int tries = 0; tries < 100000; ++tries) {
     const int count = static_cast<int>(problem.matches.size());

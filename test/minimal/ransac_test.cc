@@ -65,6 +65,7 @@ class LineSolver {
     return true;
   }
 
+  double Work(int num_solutions) const { return 1.0 + num_solutions; }
   int MinimalSolver(const int* sample, Solutions* solutions) const {
     solutions->clear();
     const double dx = x_[sample[1]] - x_[sample[0]];

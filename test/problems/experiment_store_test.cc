@@ -149,6 +149,8 @@ TEST_F(ExperimentStoreTest, SaysWhatIsWrongAndWhere) {
   std::string error;
   EXPECT_FALSE(store.Open("/no/such/directory/x", plan_, false, &error));
   EXPECT_THAT(error, HasSubstr("/no/such/directory/x"));
+  std::filesystem::resize_file(path_, uintmax_t{1} << 33);
+  EXPECT_THAT(OpenError(), HasSubstr(": expected a file of at most 1 GiB"));
 }
 
 TEST_F(ExperimentStoreTest, WithoutResumeItBeginsAnew) {

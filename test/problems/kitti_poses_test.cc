@@ -42,8 +42,8 @@ TEST_F(KittiPoses, ReadsRowsOfTheMatrix) {
   std::string error;
   // Turned by 90 degrees about Y, blanks of all kinds, no line break at the end.
   ASSERT_TRUE(ReadKittiPoses(
-      Write("a.txt", std::string(kIdentity) + "\r\n  0\t0 1.000000e+00 +4 0 1 0 -5 -1 0 0 6.5"),
-      &poses, &error))
+      Write("a.txt", std::string(kIdentity) + "  0\t0 1.000000e+00 +4 0 1 0 -5 -1 0 0 6.5"), &poses,
+      &error))
       << error;
   ASSERT_EQ(poses.size(), 2u);
   EXPECT_TRUE(poses[0].R.isIdentity());
@@ -73,7 +73,7 @@ TEST_F(KittiPoses, WhatIsBrokenIsToldWithFileAndLine) {
       {"0 0 0 0 0 0 0 0 0 0 0 0\n", "not a rotation"},
   };
   for (const auto& [line, what] : broken) {
-    const std::string path = Write("a.txt", std::string(kIdentity) + "\n" + line + kIdentity);
+    const std::string path = Write("a.txt", std::string(kIdentity) + kIdentity + line + kIdentity);
     std::vector<Pose> poses(7);
     std::string error;
     EXPECT_FALSE(ReadKittiPoses(path, &poses, &error)) << line;
@@ -83,6 +83,10 @@ TEST_F(KittiPoses, WhatIsBrokenIsToldWithFileAndLine) {
   }
   std::vector<Pose> poses;
   std::string error;
+  // A line that is skipped would give each later frame the pose of another.
+  EXPECT_FALSE(
+      ReadKittiPoses(Write("b.txt", std::string(kIdentity) + "\n" + kIdentity), &poses, &error));
+  EXPECT_THAT(error, HasSubstr("b.txt:2: a blank line"));
   EXPECT_FALSE(ReadKittiPoses(Write("b.txt", "\n"), &poses, &error));
   EXPECT_THAT(error, EndsWith("b.txt: there is no pose in it"));
   EXPECT_FALSE(ReadKittiPoses(directory_ + "/none.txt", &poses, &error));

@@ -117,6 +117,12 @@ INSTANTIATE_TEST_SUITE_P(
         {"axis sigma zero", "deg 0.25", "deg 0.0", 11, "S is '0.0'"},
         {"normal norm", "normal 0 -1 0", "normal 0 -2 0", 12, "direction has norm 2,"},
         {"normal sigma", "deg 2", "deg", 13, "1 column, expected 2 (normal_sigma_deg S)"},
+        {"forward norm", "normal_sigma_deg 2", "forward 1 1 0", 13, "direction has norm 1.41421"},
+        {"forward short", "normal_sigma_deg 2", "forward 1 0", 13,
+         "3 columns, expected 4 (forward FX FY FZ)"},
+        {"forward nan", "normal_sigma_deg 2", "forward 0 nan 1", 13, "FY is 'nan'"},
+        {"forward twice", "normal 0 -1 0\nnormal_sigma_deg 2", "forward 1 0 0\nforward 1 0 0", 13,
+         "'forward'"},
         {"distance negative", "1.5 0.125", "-1.5 0.125", 14, "D is '-1.5', expected a number >= 0"},
         {"distance sigma zero", "1.5 0.125", "1.5 0", 14, "SIGMA is '0', expected a positive"},
         {"distance sigma missing", "1.5 0.125", "1.5", 14,
@@ -212,7 +218,7 @@ TEST(MatchFile, Utf16IsToldApart) {
   FramePair pair;
   std::string error;
   EXPECT_FALSE(ParseMatches(text, "x.matches", &pair, &error));
-  EXPECT_NE(error.find("NUL byte"), std::string::npos) << error;
+  EXPECT_EQ(error, "x.matches: UTF-16, by its byte order mark, expected a match file (UTF-8 text)");
 }
 
 TEST(MatchFile, Utf8SequenceNames) {

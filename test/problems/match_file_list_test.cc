@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "rigel/problems/name_order.h"
 #include "rigel/test/problems/match_file_text.h"
 
 namespace rigel {
@@ -38,6 +39,56 @@ TEST(ListMatchFiles, FilesAndDirectoriesInOrder) {
   EXPECT_EQ(errors,
             (std::vector<std::string>{dir / "none: cannot be opened: No such file or directory",
                                       dir / "empty: no .matches files in this directory"}));
+}
+
+TEST(ListMatchFiles, NumbersAscendAndThatIsSaid) {
+  const TempDir dir;
+  fs::create_directories(dir / "d");
+  fs::create_directories(dir / "e");
+  const std::vector<std::string> in_order = {"9-10.matches", "10-9.matches", "10-11.matches.gz",
+                                             "100-1.matches"};
+  std::vector<std::string> paths;
+  for (const std::string& name : in_order) {
+    WriteText(dir / ("d/" + name), "");
+    paths.push_back(dir / ("d/" + name));
+  }
+  std::vector<std::string> errors, notes;
+  EXPECT_EQ(ListMatchFiles(dir / "d", &errors, &notes), paths);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_NE(notes[0].find("in the order of the numbers in their names"), std::string::npos);
+  // Once for all directories, and not at all where byte order is the same or a name has no number.
+  for (const char* name : {"e/000009.matches", "e/000010.matches"}) WriteText(dir / name, "");
+  notes.clear();
+  ListMatchFiles((dir / "e") + "," + (dir / "d") + "," + (dir / "d"), &errors, &notes);
+  EXPECT_EQ(notes.size(), 1u);
+  WriteText(dir / "d/x.matches", "");
+  notes.clear();
+  EXPECT_EQ(ListMatchFiles(dir / "d", &errors, &notes)[0], dir / "d/10-11.matches.gz");
+  EXPECT_TRUE(notes.empty());
+  EXPECT_TRUE(errors.empty());
+}
+
+TEST(ListMatchFiles, DecimalsAreNoNumbersOfTheirOwn) {
+  std::vector<std::string> names = {"9.5", "10.25", "10.3"};
+  EXPECT_TRUE(SortByNumbers(&names));
+  EXPECT_EQ(names, (std::vector<std::string>{"9.5", "10.25", "10.3"}));
+  EXPECT_FALSE(ComesBeforeByNumbers("1.5", "1.25"));
+  // Of equal numbers one comes first, whatever the order they come in.
+  EXPECT_NE(ComesBeforeByNumbers("1", "01"), ComesBeforeByNumbers("01", "1"));
+  EXPECT_FALSE(ComesBeforeByNumbers("7a", "7a"));
+}
+
+TEST(ListMatchFiles, StdinOnceAndOneOfAFileAndItsCompressedLike) {
+  const TempDir dir;
+  WriteText(dir / "a.matches", "");
+  WriteText(dir / "a.matches.gz", "");
+  WriteText(dir / "b.matches.gz", "");
+  std::vector<std::string> errors;
+  EXPECT_EQ(ListMatchFiles("-," + (dir / "") + ",-", &errors),
+            (std::vector<std::string>{"-", dir / "a.matches", dir / "b.matches.gz"}));
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_NE(errors[0].find("a.matches.gz: left out, a.matches is there too"), std::string::npos);
+  EXPECT_EQ(errors[1], "-: named twice, expected once: stdin can be read but once");
 }
 
 TEST(ListMatchFiles, NothingGivesNothing) {

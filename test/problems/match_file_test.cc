@@ -63,6 +63,16 @@ TEST(MatchFile, ReadsEveryField) {
   EXPECT_EQ(pair.matches[2].score, -1);
 }
 
+TEST(MatchFile, ReadsWhereTheFrontIs) {
+  const std::string text =
+      Replace(kValid, "normal_sigma_deg 2\n", "normal_sigma_deg 2\nforward 0.8 0 -0.6\n");
+  EXPECT_EQ(MustParse(text).prior.forward, Eigen::Vector3d(0.8, 0, -0.6));
+  EXPECT_NE(FormatMatches(MustParse(text)).find("\nforward 0.8 0 -0.6\n"), std::string::npos);
+  // Files are as old as the format.
+  EXPECT_FALSE(MustParse(kValid).prior.forward);
+  EXPECT_EQ(FormatMatches(MustParse(kValid)).find("forward"), std::string::npos);
+}
+
 TEST(MatchFile, OptionalLinesMayBeAbsent) {
   const FramePair pair = MustParse(
       "format rigmatch 1\ncamera 0 pinhole 1 1 0 0 1 1 1 0 0 0 0 0 0\ngravity1 1 0 0\n"

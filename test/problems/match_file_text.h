@@ -110,6 +110,7 @@ inline void ExpectSame(const FramePair& a, const FramePair& b) {
   EXPECT_EQ(a.prior.axis_sigma, b.prior.axis_sigma);
   EXPECT_EQ(a.prior.normal, b.prior.normal);
   EXPECT_EQ(a.prior.normal_sigma, b.prior.normal_sigma);
+  EXPECT_EQ(a.prior.forward, b.prior.forward);
   EXPECT_EQ(a.prior.distance, b.prior.distance);
   EXPECT_EQ(a.prior.distance_sigma, b.prior.distance_sigma);
   ASSERT_EQ(a.matches.size(), b.matches.size());
@@ -159,6 +160,7 @@ inline FramePair RandomPair(uint64_t seed) {
   pair.prior.axis_sigma = sigma();
   pair.prior.normal = random.UnitVector3();
   pair.prior.normal_sigma = sigma();
+  pair.prior.forward = random.UnitVector3();
   pair.prior.distance = std::abs(number());
   pair.prior.distance_sigma = std::abs(number());
   for (int k = 0; k < 50; ++k) {

@@ -17,6 +17,19 @@
 namespace rigel {
 namespace {
 
+TEST(WriteMatchFile, ByItsNameCompressed) {
+  const TempDir dir;
+  const FramePair pair = MustParse(kValid);
+  FramePair read;
+  std::string error;
+  ASSERT_TRUE(WriteMatchFile(dir / "a.matches.gz", pair, &error)) << error;
+  ASSERT_TRUE(ReadMatchFile(dir / "a.matches.gz", &read, &error)) << error;
+  EXPECT_EQ(FormatMatches(read), FormatMatches(pair));
+  std::ifstream file(dir / "a.matches.gz", std::ios::binary);
+  EXPECT_EQ(file.get(), 0x1f);
+  EXPECT_EQ(file.get(), 0x8b);
+}
+
 TEST(MatchFile, NearlyAllDoublesSurviveWritingAndReading) {
   double worst_rotation = 0, worst_sigma = 0;
   for (uint64_t seed = 0; seed < 500; ++seed) {

@@ -13,6 +13,7 @@
 namespace rigel {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -140,6 +141,33 @@ TEST(PlaneCalibration, WhatHasNoPlaneIsSaid) {
   EXPECT_EQ(CalibratePlane({}, kY).level, CalibrationLevel::kNone);
 }
 
+// What stood in the way is what is named.
+TEST(PlaneCalibration, AWrongStartIsBlamedForWhatItIs) {
+  // Turns in a plane that is not across the start.
+  const Eigen::Matrix3d upright = ExpSO3({DegToRad(60.0), 0, 0});
+  const PlaneCalibration far = CalibratePlane(Drive({}, upright, upright, 6), kY);
+  EXPECT_EQ(far.level, CalibrationLevel::kNone);
+  EXPECT_EQ(far.normal, kY);
+  EXPECT_THAT(far.message, AllOf(HasSubstr("lie in a plane, but across"),
+                                 HasSubstr("degrees from the start +y"), HasSubstr("--down")));
+  EXPECT_NEAR(std::stod(far.message.substr(far.message.find(" degrees") - 4)), 60.0, 0.3);
+  // Straight ahead along what is said to be down.
+  DriveOptions straight;
+  straight.yaw_deg = 0.0;
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+  const PlaneCalibration along = CalibratePlane(Drive(straight, I, I, 7), Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(along.level, CalibrationLevel::kNone);
+  EXPECT_THAT(along.message, AllOf(HasSubstr("most translations go along"),
+                                   HasSubstr("out of the plane across the start +z")));
+  // Nothing is wrong with the start where the motions are of no plane.
+  DriveOptions wild;
+  wild.bumps_deg = 60.0;
+  wild.vibration_deg = 20.0;
+  const PlaneCalibration scatter = CalibratePlane(Drive(wild, I, I, 8), kY);
+  EXPECT_EQ(scatter.level, CalibrationLevel::kNone);
+  EXPECT_THAT(scatter.message, AllOf(HasSubstr("scatter too much"), HasSubstr("at most 1.0")));
+}
+
 TEST(GravityCalibration, TurnsGiveTheTiltWithinItsSigma) {
   constexpr int kSeeds = 100;
   DriveOptions options;
@@ -196,6 +224,15 @@ TEST(GravityCalibration, StraightDriveGivesNothing) {
     EXPECT_THAT(gravity.message, HasSubstr("too little rotation"));
     EXPECT_EQ(gravity.C, Eigen::Matrix3d(Eigen::Matrix3d::Identity()));
   }
+  // Turns enough, in the frame of an IMU that stands on end.
+  DriveOptions hills;
+  hills.pairs = 300;
+  hills.pitch_deg = 2.0;
+  hills.vibration_deg = 0.02;
+  const GravityCalibration on_end = CalibrateGravity(
+      Drive(hills, Eigen::Matrix3d::Identity(), ExpSO3({DegToRad(50.0), 0, 0}), 3));
+  EXPECT_EQ(on_end.level, CalibrationLevel::kNone);
+  EXPECT_THAT(on_end.message, HasSubstr("turned by 50.0 degrees against the body"));
   std::vector<CalibrationMotion> none = Drive({}, kTilted, kTilted, 1);
   for (CalibrationMotion& motion : none) motion.prior.gravity2.reset();
   EXPECT_THAT(CalibrateGravity(none).message, HasSubstr("too few pairs that state gravity1"));

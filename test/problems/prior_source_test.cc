@@ -60,7 +60,82 @@ TEST(PriorSource, FileLeavesThePriorAsItIs) {
   EXPECT_FALSE(prior.gravity1 || prior.gravity2 || prior.normal);
 }
 
-TEST(PriorSource, BodyIsBodyYAndNeedsNoTruth) {
+// A rig of a body with x forward, y left, z up: cameras ahead and at the back.
+Rig ZUpRig() {
+  Rig rig;
+  rig.cameras.resize(2);
+  rig.cameras[0].Q << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  rig.cameras[1].Q << 0, 0, -1, 1, 0, 0, 0, -1, 0;
+  return rig;
+}
+
+TEST(PriorSource, BodyIsDownAsTheRigSuggestsIt) {
+  PriorSourceOptions options;
+  options.source = PriorSource::kBody;
+  FramePair pair;
+  pair.rig = ZUpRig();
+  std::string error;
+  AppliedAxes applied;
+  ASSERT_TRUE(ApplyPriorSource(options, 0, &pair, &error, &applied)) << error;
+  const Eigen::Vector3d down(0, 0, -1);
+  EXPECT_TRUE(*pair.prior.gravity1 == down && *pair.prior.gravity2 == down &&
+              *pair.prior.axis == down && *pair.prior.normal == down);
+  EXPECT_EQ(pair.prior.forward, Eigen::Vector3d(1, 0, 0));
+  EXPECT_TRUE(applied.down_suggested && applied.forward_suggested);
+  EXPECT_EQ(applied.axes.down, down);
+  EXPECT_EQ(applied.axes.forward, Eigen::Vector3d(1, 0, 0));
+  EXPECT_NEAR(applied.cameras_off_down, 0.0, 1e-12);
+}
+
+TEST(PriorSource, WhatIsStatedOfTheBodyWinsAndIsNotSuggested) {
+  PriorSourceOptions options;
+  options.source = PriorSource::kBody;
+  options.down = Eigen::Vector3d(0, 1, 0);
+  options.forward = Eigen::Vector3d(0, 0, 1);
+  FramePair pair;
+  pair.rig = ZUpRig();
+  pair.prior.forward = Eigen::Vector3d(-1, 0, 0);
+  std::string error;
+  AppliedAxes applied;
+  FramePair flags = pair;
+  ASSERT_TRUE(ApplyPriorSource(options, 0, &flags, &error, &applied)) << error;
+  EXPECT_EQ(*flags.prior.normal, Eigen::Vector3d(0, 1, 0));
+  EXPECT_EQ(*flags.prior.forward, Eigen::Vector3d(0, 0, 1));
+  EXPECT_FALSE(applied.down_suggested || applied.forward_suggested);
+  // The file's line, over what the rig suggests.
+  FramePair file = pair;
+  ASSERT_TRUE(ApplyPriorSource(PriorSourceOptions(), 0, &file, &error, &applied)) << error;
+  EXPECT_EQ(*file.prior.forward, Eigen::Vector3d(-1, 0, 0));
+  EXPECT_FALSE(file.prior.normal || applied.down_suggested || applied.forward_suggested);
+  // Both along one line.
+  pair.name = "a.matches";
+  options.forward.reset();
+  options.down = Eigen::Vector3d(1, 0, 0);
+  EXPECT_FALSE(ApplyPriorSource(options, 0, &pair, &error));
+  EXPECT_THAT(error, ::testing::HasSubstr("a.matches: forward -x is within 30 degrees"));
+  EXPECT_THAT(error, ::testing::HasSubstr("--forward"));
+}
+
+TEST(PriorSource, NoiseTurnsAboutTheBodysRightAndForward) {
+  const auto turned = [](PriorNoiseAxis axis) {
+    PriorSourceOptions options;
+    options.source = PriorSource::kBody;
+    options.noise = 0.1;
+    options.noise_axis = axis;
+    FramePair pair;
+    pair.rig = ZUpRig();
+    return *Applied(options, 0, pair).prior.gravity2;
+  };
+  // Right is -y of this body, forward x: down, -z, moves along x, along y.
+  const Eigen::Vector3d pitch = turned(PriorNoiseAxis::kPitch);
+  EXPECT_NEAR(std::abs(pitch.x()), std::sin(0.1), 1e-12);
+  EXPECT_NEAR(pitch.y(), 0.0, 1e-12);
+  const Eigen::Vector3d roll = turned(PriorNoiseAxis::kRoll);
+  EXPECT_NEAR(std::abs(roll.y()), std::sin(0.1), 1e-12);
+  EXPECT_NEAR(roll.x(), 0.0, 1e-12);
+}
+
+TEST(PriorSource, BodyOfNoCamerasIsBodyYAndNeedsNoTruth) {
   PriorSourceOptions options;
   options.source = PriorSource::kBody;
   FramePair pair;

@@ -168,8 +168,12 @@ TEST(TrajectoryFile, LinesAreAsTheToolsReadThem) {
   pose.R = RotationY(0.5);
   pose.t = {1, -2, 0.1};
   EXPECT_EQ(FormatKittiTrajectory({Pose()}), "1 0 0 0 0 1 0 0 0 0 1 0\n");
-  EXPECT_EQ(FormatTumTrajectory({Pose()}, {12.5}), "12.5 0 0 0 0 0 0 1\n");
-  EXPECT_THAT(FormatTumTrajectory({Pose(), pose}, {}), HasSubstr("\n1 1 -2 0.1 0 0.247"));
+  EXPECT_EQ(FormatTumTrajectory({Pose()}, {12.5}, BodyAxes()),
+            "# body: down +y, forward +z\n12.5 0 0 0 0 0 0 1\n");
+  const BodyAxes z_up = {{0, 0, -1}, {1, 0, 0}};
+  EXPECT_THAT(FormatTumTrajectory({Pose()}, {}, z_up),
+              testing::StartsWith("# body: down -z, forward +x\n# no times"));
+  EXPECT_THAT(FormatTumTrajectory({Pose(), pose}, {}, BodyAxes()), HasSubstr("\n1 1 -2 0.1 0 0.247"));
 }
 
 }  // namespace

@@ -73,6 +73,44 @@ TEST(EstimateMotion, EverySolverOfTheCatalogueRefinesToTheSameAccuracy) {
   }
 }
 
+// A car's turn, X_new = B X: of a body with x forward, y left and z up.
+TEST(EstimateMotion, AckermannMotionGoesWhereTheFrontIs) {
+  Eigen::Matrix3d B;
+  B << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  std::vector<double> rig, stated, wrong;
+  for (int index = 0; index < 10; ++index) {
+    Pose truth;
+    truth.R = RotationY(DegToRad(10.0));
+    truth.t = -(RotationY(DegToRad(5.0)) * Eigen::Vector3d::UnitZ());
+    SceneOptions scene;
+    scene.inter_share = 0.5;
+    scene.noise_px = 0.1;
+    FramePair pair = ScenePair(scene, index, truth);
+    for (RigCamera& camera : pair.rig.cameras) {
+      camera.Q = B * camera.Q;
+      camera.s = B * camera.s;
+    }
+    truth.R = B * truth.R * B.transpose();
+    truth.t = B * truth.t;
+    pair.prior = MotionPrior();
+    pair.prior.normal = Eigen::Vector3d::UnitZ();
+    const auto raw_error = [&] {
+      const MotionEstimate estimate = EstimateMotion(With("2pt-ackermann"), pair);
+      EXPECT_TRUE(estimate.HasMotion()) << estimate.message;
+      return DirectionErrorDeg(truth, estimate.raw);
+    };
+    rig.push_back(raw_error());
+    pair.prior.forward = Eigen::Vector3d::UnitX();
+    stated.push_back(raw_error());
+    // As if the car drove sideways.
+    pair.prior.forward = Eigen::Vector3d::UnitY();
+    wrong.push_back(raw_error());
+  }
+  EXPECT_LT(MedianOf(rig), 0.2);
+  EXPECT_EQ(stated, rig);
+  EXPECT_GT(MedianOf(wrong), 1.0);
+}
+
 TEST(EstimateMotion, WithoutRefinementTheMotionIsRansacs) {
   SceneOptions scene;
   scene.outlier_share = 0.2;

@@ -112,6 +112,49 @@ TEST_F(CalibratePriorTest, FindsTwoDegreesWithinItsSigmaAndWritesThem) {
   EXPECT_LT(raw(Path("out")), 0.7 * raw(matches));
 }
 
+// A body with x forward, y left and z up.
+TEST_F(CalibratePriorTest, ZUpBodyFindsItsNormalAndAWrongDownIsBlamed) {
+  const std::string matches = Misaligned("in");
+  MakeZUpWithoutPriors(matches);
+  const Outcome found = RunTool("calibrate_prior", {"--matches=" + matches, "--json=-"});
+  ASSERT_EXIT_CODE(found, 0);
+  EXPECT_THAT(Lines(found.err), ElementsAre("--down=-z: taken from the cameras of the rig"));
+  const Json plane = ParseReport(found.out)["plane"];
+  EXPECT_EQ(plane["level"], "full");
+  const std::vector<double> n = plane["normal"];
+  EXPECT_LT(AngleDeg({n[0], n[1], n[2]}, {0, 0, -1}), 0.2);
+
+  const Outcome up = RunTool("calibrate_prior", {"--matches=" + matches, "--down=z", "--json=-"});
+  ASSERT_EXIT_CODE(up, 0);
+  EXPECT_THAT(up.err, IsEmpty());
+  EXPECT_GT(ParseReport(up.out)["plane"]["normal"][2].get<double>(), 0.99);
+
+  const Outcome wrong =
+      RunTool("calibrate_prior", {"--matches=" + matches, "--down=+y", "--output=" + Path("out")});
+  EXPECT_EXIT_CODE(wrong, 1);
+  EXPECT_THAT(wrong.out, AllOf(HasSubstr("not determined: the motions lie in a plane, but across"),
+                               HasSubstr(" degrees from the"), HasSubstr("start +y, farther"),
+                               HasSubstr("(--down)")));
+  EXPECT_LE(Width(wrong.out), 100u);
+  EXPECT_THAT(Lines(wrong.err), ElementsAre(HasSubstr("nothing is written")));
+  EXPECT_FALSE(std::filesystem::exists(Path("out")));
+}
+
+TEST_F(CalibratePriorTest, PairsWithoutAMotionAreToldOnce) {
+  const std::string matches = Simulate("in", {"--pairs=12", "--num_matches=60"});
+  for (FramePair& pair : Read(matches)) {
+    pair.prior = MotionPrior();
+    std::string error;
+    EXPECT_TRUE(WriteMatchFile(pair.name, pair, &error)) << error;
+  }
+  const Outcome run = RunTool("calibrate_prior", {"--matches=" + matches, "--solver=4pt"});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(Lines(run.err),
+              ElementsAre(AllOf(HasSubstr("000000.matches: 4pt: the prior has no gravity1"),
+                                HasSubstr("(12 files alike)")),
+                          HasSubstr("--down=+y"), "no pair has a motion"));
+}
+
 TEST_F(CalibratePriorTest, InPlaceLeavesWholeFilesAndNothingElse) {
   const std::string matches = Misaligned("in");
   const std::string before = ReadText(matches + "/000000.matches");
@@ -144,11 +187,12 @@ TEST_F(CalibratePriorTest, NothingIsWrittenThatIsNotObservable) {
   const std::string few = Simulate("few", {"--pairs=5", "--inter_share=0.5"});
   const Outcome said = RunTool("calibrate_prior", {"--matches=" + few});
   EXPECT_EXIT_CODE(said, 0);  // an answer
-  EXPECT_THAT(said.out, HasSubstr("not observable: too few motions"));
+  EXPECT_THAT(said.out, HasSubstr("not determined: too few motions"));
+  EXPECT_THAT(Lines(said.err), ElementsAre("--down=+y: taken from the cameras of the rig"));
   const std::string before = ReadText(few + "/000000.matches");
   const Outcome run = RunTool("calibrate_prior", {"--matches=" + few, "--in_place", "--json=-"});
   EXPECT_EXIT_CODE(run, 1);
-  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("nothing is written")));
+  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("--down=+y"), HasSubstr("nothing is written")));
   EXPECT_EQ(ParseReport(run.out)["plane"]["level"], "none");
   EXPECT_EQ(ReadText(few + "/000000.matches"), before);
 }

@@ -288,7 +288,8 @@ TEST_F(CompareTest, FileWithoutTruthFailsTheRunAndTheOthersAreReported) {
   const Outcome none = RunTool("compare", {"--matches=" + matches, "--json=-"});
   EXPECT_EXIT_CODE(none, 1);
   EXPECT_THAT(none.out, IsEmpty());
-  EXPECT_THAT(Lines(none.err), SizeIs(3));
+  EXPECT_THAT(Lines(none.err), ElementsAre(AllOf(HasSubstr("000000.matches: has no truth line"),
+                                                 HasSubstr("(3 files alike)"))));
 }
 
 TEST_F(CompareTest, PairWithoutThePriorOfItsSolverIsAFailureAndNoError) {
@@ -306,8 +307,14 @@ TEST_F(CompareTest, PairWithoutThePriorOfItsSolverIsAFailureAndNoError) {
   EXPECT_EQ(entry["direction_pairs"], 2);
   EXPECT_TRUE(entry.contains("bound"));
 
-  // Nobody has a normal.
-  const Json all = Compare({"--matches=" + matches, "--solvers=3pt"})["results"][0];
+  // Nobody has a normal, and so nobody a motion.
+  const Outcome nobody = RunTool("compare", {"--matches=" + matches, "--solvers=3pt", "--json=-"});
+  EXPECT_EXIT_CODE(nobody, 1);
+  EXPECT_THAT(Lines(nobody.err),
+              ElementsAre(AllOf(HasSubstr("000000.matches: 3pt: the prior has no normal"),
+                                HasSubstr("(3 files alike)")),
+                          "no pair has a motion"));
+  const Json all = ParseReport(nobody.out)["results"][0];
   EXPECT_THAT(Keys(all),
               UnorderedElementsAre("solver", "sequence", "pairs", "failures", "direction_pairs"));
   EXPECT_EQ(all["failures"], 3);

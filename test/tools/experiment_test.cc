@@ -345,21 +345,45 @@ TEST_F(PlotTest, FromAboveLooksAlongTheVertical) {
   }
   WriteText(Path("kitti.txt"), kitti);
   WriteText(Path("tum.txt"), tum);
+  // To the right and up.
   const auto axes = [&](const Args& args) {
     EXPECT_EXIT_CODE(RunTool("plot.py", args + Args{"--output=" + Path("f")}), 0);
     const std::string svg = ReadText(Path("f/trajectory.svg"));
     std::string found;
-    for (const char* axis : {"x", "y", "z"}) {
-      if (svg.find(std::string(">") + axis + " [m]<") != std::string::npos) found += axis;
+    for (const char* place : {">to the right, ", ">forward, "}) {
+      const size_t at = svg.find(place);
+      EXPECT_NE(at, std::string::npos);
+      const size_t begin = at + std::string(place).size();
+      found += (found.empty() ? "" : " ") + svg.substr(begin, svg.find(" [m]<", begin) - begin);
     }
     return found;
   };
-  for (const char* name : {"kitti.txt", "tum.txt"}) {
-    EXPECT_EQ(axes({"--estimate=" + Path(name)}), "xz") << name;
-    EXPECT_EQ(axes({"--estimate=" + Path(name), "--vertical=z"}), "xy") << name;
-    EXPECT_EQ(axes({"--estimate=" + Path(name), "--vertical=x"}), "yz") << name;
+  EXPECT_EQ(axes({"--estimate=" + Path("tum.txt")}), "+x +z");
+  const std::string estimate = "--estimate=" + Path("kitti.txt");
+  EXPECT_EQ(axes({estimate}), "+x +z");
+  EXPECT_EQ(axes({estimate, "--vertical=z"}), "+x +y");
+  EXPECT_EQ(axes({estimate, "--down=0,0,-2"}), "-y +x");
+  EXPECT_EQ(axes({estimate, "--forward=-z"}), "-x -z");
+  for (const Args& wrong : {Args{"--down=1,2"}, Args{"--vertical=y", "--down=y"}}) {
+    EXPECT_EXIT_CODE(RunTool("plot.py", Args{"--estimate=" + Path("tum.txt")} + wrong), 2);
   }
-  EXPECT_EXIT_CODE(RunTool("plot.py", {"--estimate=" + Path("tum.txt"), "--vertical=w"}), 2);
+  const Outcome along = RunTool("plot.py", {"--estimate=" + Path("tum.txt"), "--down=z",
+                                            "--forward=-z", "--output=" + Path("f")});
+  EXPECT_EXIT_CODE(along, 1);
+  EXPECT_THAT(along.err, HasSubstr("within 30 degrees"));
+
+  // A body with x forward and z up, by its drive; what a TUM file of rigel_estimate says wins.
+  std::string x_forward;
+  for (int k = 0; k < 5; ++k) {
+    x_forward += "1 0 0 " + std::to_string(k) + " 0 1 0 0 0 0 1 0\n";
+  }
+  WriteText(Path("x.txt"), x_forward);
+  EXPECT_EQ(axes({"--truth=" + Path("x.txt")}), "-y +x");
+  WriteText(Path("said.txt"), "# body: down -x, forward +z\n" + tum);
+  EXPECT_EQ(axes({"--estimate=" + Path("said.txt")}), "+y +z");
+  // A camera's drive in a world with z up: the camera's y is down there.
+  WriteText(Path("world.txt"), "1 0 0 0 0 0 1 0 0 -1 0 0\n1 0 0 0 0 0 1 1 0 -1 0 0\n");
+  EXPECT_EQ(axes({"--estimate=" + Path("world.txt")}), "+x +y");
 }
 
 // An experiment with one point, as JSON.

@@ -15,8 +15,10 @@ using testing::StartsWith;
 
 // DESIGN.md, section 10, and --loss.
 const Args kEstimationFlags = {"confidence",
+                               "down",
                                "estimate_noise",
                                "fix_translation_norm",
+                               "forward",
                                "loss",
                                "matches",
                                "max_iterations",
@@ -145,6 +147,9 @@ TEST(Flags, ValueOutOfRangeIsAUsageErrorBeforeAnyFileIsRead) {
         {"--use=both", "all, intra or inter"},
         {"--prior=imu", "file, body or truth"},
         {"--prior_noise_axis=yaw", "pitch, roll or random"},
+        {"--down=down", "--down=down: expected +x, -x, +y, -y, +z, -z or three numbers"},
+        {"--forward=1,0", "--forward=1,0: expected +x"},
+        {"--forward=0,0,nan", "--forward=0,0,nan: expected +x"},
         {"--prior_noise_deg=nan", "prior_noise_deg"},
         {"--prior_noise_deg=181", "prior_noise_deg=181: expected -180 to 180"},
         {"--prior_noise_deg=1e308", "prior_noise_deg=1e+308: expected"},

@@ -56,6 +56,10 @@ std::vector<std::string> Keys(const Json& object);
 // Takes the entries out that may differ from run to run.
 Json WithoutTimes(Json report);
 
+// Turns the bodies of the match files of a directory, x right and y down, to x forward and z up,
+// and takes out what they state of the motion but for the truth.
+void MakeZUpWithoutPriors(const std::string& directory);
+
 // Each test gets an empty directory of its own.
 class ToolsTest : public testing::Test {
  protected:

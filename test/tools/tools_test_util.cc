@@ -12,6 +12,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "rigel/problems/match_file.h"
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {
@@ -132,6 +133,27 @@ void WriteText(const std::string& path, const std::string& text) {
   file << text;
   file.close();
   ASSERT_TRUE(file) << path << " cannot be written";
+}
+
+void MakeZUpWithoutPriors(const std::string& directory) {
+  Eigen::Matrix3d B;
+  B << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  std::vector<std::string> errors;
+  for (const std::string& path : ListMatchFiles(directory, &errors)) {
+    FramePair pair;
+    std::string error;
+    ASSERT_TRUE(ReadMatchFile(path, &pair, &error)) << error;
+    for (RigCamera& camera : pair.rig.cameras) {
+      camera.Q = B * camera.Q;
+      camera.s = B * camera.s;
+    }
+    if (pair.truth) {
+      pair.truth->R = B * pair.truth->R * B.transpose();
+      pair.truth->t = B * pair.truth->t;
+    }
+    pair.prior = MotionPrior();
+    ASSERT_TRUE(WriteMatchFile(path, pair, &error)) << error;
+  }
 }
 
 std::vector<std::string> Lines(const std::string& text) {

@@ -14,6 +14,7 @@ namespace rigel {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -49,19 +50,20 @@ class EurocSequence : public testing::Test {
   ImageSequence Read(const std::string& below = "") {
     ImageSequence sequence;
     std::string error;
-    EXPECT_TRUE(ReadEurocSequence(root_ + below, &sequence, &error)) << error;
+    EXPECT_TRUE(ReadEurocSequence(root_ + below, options_, &sequence, &error)) << error;
     return sequence;
   }
   std::string Error() {
     ImageSequence sequence;
     std::string error;
-    EXPECT_FALSE(ReadEurocSequence(root_, &sequence, &error));
+    EXPECT_FALSE(ReadEurocSequence(root_, options_, &sequence, &error));
     EXPECT_THAT(error, testing::StartsWith(root_));
     EXPECT_THAT(error, testing::Not(HasSubstr("\n")));
     return error;
   }
 
   std::string root_;
+  EurocOptions options_;
 };
 
 TEST_F(EurocSequence, CamerasAreAsTheirSensorsSay) {
@@ -108,8 +110,77 @@ TEST_F(EurocSequence, FramesAreTheTimesThatBothCamerasHave) {
       sequence.notes,
       ElementsAre(HasSubstr("cam0/data.csv: 2 of 4 images are left out: no image of cam1"),
                   HasSubstr("cam1/data.csv: 1 of 3 images are left out: no image of cam0")));
-  Write("mav0/cam1/data.csv", "101,A.png\n");
-  EXPECT_THAT(Error(), HasSubstr("no image of cam0 has a time stamp of cam1"));
+}
+
+// Recorded cameras are triggered some microseconds apart.
+TEST_F(EurocSequence, StampsOfOneFrameMayDifferByTheTolerance) {
+  Write("mav0/cam0/data.csv", "50000000,a.png\n100000000,b.png\n150000000,c.png\n");
+  Write("mav0/cam1/data.csv", "50007000,A.png\n99988000,B.png\n156000000,C.png\n");
+  const ImageSequence sequence = Read();
+  ASSERT_EQ(sequence.frames.size(), 2u);
+  EXPECT_THAT(sequence.frames[1].images[0], testing::EndsWith("cam0/data/b.png"));
+  EXPECT_THAT(sequence.frames[1].images[1], testing::EndsWith("cam1/data/B.png"));
+  EXPECT_EQ(sequence.frames[1].time, 0.1) << "of cam0";
+  EXPECT_EQ(sequence.sync_tolerance, "default");
+  EXPECT_THAT(sequence.notes,
+              ElementsAre(HasSubstr("cam0 and cam1 differ by up to 0.012 ms, within 5 ms, a tenth"),
+                          HasSubstr("cam0/data.csv: 1 of 3 images"),
+                          HasSubstr("cam1/data.csv: 1 of 3 images")));
+  options_.sync_tolerance_ms = 6;
+  EXPECT_EQ(Read().frames.size(), 3u);
+  EXPECT_EQ(Read().sync_tolerance, "6");
+  options_.sync_tolerance_ms = 0.008;
+  EXPECT_EQ(Read().frames.size(), 1u);
+  options_.sync_tolerance_ms = 0;
+  EXPECT_THAT(Error(),
+              AllOf(HasSubstr("no image of cam1 is of the time of one of cam0, within 0 ms"),
+                    HasSubstr("the nearest are 0.007 ms apart")));
+}
+
+TEST_F(EurocSequence, PartnersAreEachOthersNearest) {
+  // With a tolerance of more than the interval each would have several partners.
+  options_.sync_tolerance_ms = 1e9;
+  Write("mav0/cam0/data.csv", "100,a.png\n200,b.png\n300,c.png\n");
+  Write("mav0/cam1/data.csv", "110,A.png\n190,B.png\n209,X.png\n390,C.png\n");
+  const ImageSequence sequence = Read();
+  ASSERT_EQ(sequence.frames.size(), 3u);
+  EXPECT_THAT(sequence.frames[0].images[1], testing::EndsWith("A.png"));
+  EXPECT_THAT(sequence.frames[1].images[1], testing::EndsWith("X.png"));
+  EXPECT_THAT(sequence.frames[2].images[1], testing::EndsWith("C.png"));
+}
+
+TEST_F(EurocSequence, ByteOrderMarksAreSkipped) {
+  const std::string mark = "\xef\xbb\xbf";
+  for (const char* camera : {"cam0", "cam1"}) {
+    Write(std::string("mav0/") + camera + "/data.csv", mark + "100,100.png\n200,a.png\n");
+    Write(std::string("mav0/") + camera + "/sensor.yaml", mark + SensorYaml(Scene().cameras()[0]));
+  }
+  Write("mav0/state_groundtruth_estimate0/data.csv",
+        mark + "100,1,2,3,1,0,0,0\n200,1,2,3,1,0,0,0\n");
+  const ImageSequence sequence = Read();
+  ASSERT_EQ(sequence.frames.size(), 2u);
+  EXPECT_TRUE(sequence.frames[0].world_from_body.has_value());
+  Write("mav0/cam0/data.csv",
+        "\xff\xfe"
+        "1\n");
+  EXPECT_THAT(Error(), HasSubstr("cam0/data.csv: UTF-16, by its byte order mark"));
+}
+
+TEST_F(EurocSequence, OtherCamerasAreTold) {
+  Write("mav0/cam2/data.csv", "");
+  Write("mav0/cam3/data.csv", "");
+  EXPECT_THAT(Read().notes, ElementsAre(HasSubstr("mav0/cam2: not used; the rig is cam0 and cam1"),
+                                        HasSubstr("mav0/cam3: not used")));
+}
+
+TEST_F(EurocSequence, ImagesLieInTheirFolder) {
+  for (const char* name : {"../a.png", "/etc/passwd", "x/../../../a.png"}) {
+    Write("mav0/cam1/data.csv", std::string("100,100.png\n200,") + name + "\n");
+    EXPECT_THAT(Error(), AllOf(HasSubstr("cam1/data.csv:2: '" + std::string(name) + "'"),
+                               HasSubstr("leads out of the folder")));
+  }
+  Write("mav0/cam1/data.csv", "100,left/a..b.png\n");
+  EXPECT_THAT(Read().frames[0].images[1], testing::EndsWith("cam1/data/left/a..b.png"));
 }
 
 TEST_F(EurocSequence, TruthIsInterpolatedWithinItsGaps) {

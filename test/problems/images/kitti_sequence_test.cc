@@ -138,6 +138,43 @@ TEST_F(KittiSequence, NumbersThatAreLeftOutCostNothing) {
   }
 }
 
+// A line that is skipped would give each later frame the time, or the truth, of its successor.
+TEST_F(KittiSequence, BlankLinesAndCommentsShiftNoFrame) {
+  const std::string pose = "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  Write("sequences/06/times.txt", "0.0\n\n0.2\n0.3\n");
+  EXPECT_THAT(Error(), HasSubstr("times.txt:2: a blank line, expected that of frame 1"));
+  Write("sequences/06/times.txt", "# seconds\n0.0\n0.1\n");
+  EXPECT_THAT(Error(), HasSubstr("times.txt:1: a comment"));
+  Write("sequences/06/times.txt", "0.0\n0.1\n0.2\n0.3\n\n");
+  Write("poses/06.txt", pose + pose + " \t\n" + pose);
+  EXPECT_THAT(Error(), HasSubstr("06.txt:3: a blank line, expected that of frame 2"));
+  Write("poses/06.txt", pose + "#" + pose);
+  EXPECT_THAT(Error(), HasSubstr("06.txt:2: a comment"));
+  Write("poses/06.txt", pose + pose + pose + pose + "\r\n");
+  EXPECT_EQ(Read().frames[3].time, 0.3);
+}
+
+TEST_F(KittiSequence, ByteOrderMarksAreSkipped) {
+  const std::string mark = "\xef\xbb\xbf";
+  Write("sequences/06/calib.txt", mark + kCalibration);
+  Write("sequences/06/times.txt", mark + "0.5\n0.6\n0.7\n0.8\n");
+  Write("poses/06.txt", mark + "1 0 0 0 0 1 0 0 0 0 1 7\n");
+  const ImageSequence sequence = Read();
+  EXPECT_EQ(sequence.frames[0].time, 0.5);
+  EXPECT_EQ(sequence.frames[0].world_from_body->t.z(), 7);
+  Write("sequences/06/calib.txt",
+        "\xfe\xff"
+        "P0");
+  EXPECT_THAT(Error(), HasSubstr("calib.txt: UTF-16, by its byte order mark, expected UTF-8 text"));
+}
+
+TEST_F(KittiSequence, OtherCamerasAreTold) {
+  Write("sequences/06/image_2/000000.png", "");
+  Write("sequences/06/image_3/000000.png", "");
+  EXPECT_THAT(Read().notes, testing::ElementsAre(HasSubstr(
+                                "06: not used: image_2, image_3; the rig is image_0 and image_1")));
+}
+
 TEST_F(KittiSequence, WhatIsMissingIsNamed) {
   Remove("sequences/06/image_1");
   EXPECT_THAT(Error(), HasSubstr("expected image_0 and image_1 in it, or image_2 and image_3"));

@@ -1,12 +1,11 @@
-#include "rigel/problems/images/text_lines.h"
+#include "rigel/problems/text_lines.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <system_error>
 
+#include "rigel/problems/input_file.h"
 #include "rigel/problems/match_file.h"
 
 namespace rigel {
@@ -14,26 +13,55 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
 
+// As files of poses and times go 256 MiB are a month of them; lines take more memory than bytes.
+constexpr size_t kMaxTableBytes = size_t{256} << 20;
+
+// Calls line(number, text) for each line, without blanks at its ends, while that returns true.
+template <class Line>
+bool ForEachLine(const std::string& path, std::string* error, const Line& line) {
+  InputBytes bytes;
+  if (!ReadInputFile(path, &bytes, error, kMaxTableBytes)) return false;
+  std::string_view text = bytes.text();
+  int64_t bad_line;
+  std::string what;
+  if (!CheckText(&text, &bad_line, &what)) {
+    *error = PrintablePath(path) + (bad_line > 0 ? ":" + std::to_string(bad_line) : "") + ": " +
+             what + ", expected UTF-8 text";
+    return false;
+  }
+  for (int number = 1; !text.empty(); ++number) {
+    const size_t end = std::min(text.find('\n'), text.size());
+    if (!line(number, TrimBlanks(text.substr(0, end)))) return false;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return true;
+}
+
 }  // namespace
 
 bool ReadTextLines(const std::string& path, std::vector<TextLine>* lines, std::string* error) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    *error = PrintablePath(path) + ": cannot be opened: " + std::generic_category().message(errno);
-    return false;
-  }
   lines->clear();
-  int number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++number;
-    const std::string_view text = TrimBlanks(line);
+  return ForEachLine(path, error, [&](int number, std::string_view text) {
     if (!text.empty() && text[0] != '#') lines->push_back({number, std::string(text)});
-  }
-  if (file.bad()) {
-    *error = PrintablePath(path) + ": cannot be read";
+    return true;
+  });
+}
+
+bool ReadFrameLines(const std::string& path, std::vector<TextLine>* lines, std::string* error) {
+  lines->clear();
+  const auto refuse = [&](int number, const char* what) {
+    *error = Where(path, {number, ""}) + ": " + what + ", expected that of frame " +
+             std::to_string(number - 1) + ": every line is that of a frame";
     return false;
-  }
-  return true;
+  };
+  return ForEachLine(path, error, [&](int number, std::string_view text) {
+    const int next = static_cast<int>(lines->size()) + 1;
+    if (text.empty()) return true;
+    if (number > next) return refuse(next, "a blank line");
+    if (text[0] == '#') return refuse(number, "a comment");
+    lines->push_back({number, std::string(text)});
+    return true;
+  });
 }
 
 std::string Where(const std::string& path, const TextLine& line) {
@@ -65,13 +93,6 @@ std::vector<std::string_view> SplitAtCommas(std::string_view text) {
     if (comma == std::string_view::npos) return words;
     text.remove_prefix(comma + 1);
   }
-}
-
-std::string Quoted(std::string_view word) {
-  constexpr size_t kMaxLength = 30;
-  std::string shown = PrintablePath(std::string(word.substr(0, kMaxLength)));
-  if (word.size() > kMaxLength) shown += "...";
-  return "'" + shown + "'";
 }
 
 bool ParseFinite(std::string_view word, double* value) {

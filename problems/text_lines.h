@@ -1,6 +1,10 @@
 // Text files of numbers, line by line.
-#ifndef RIGEL_PROBLEMS_IMAGES_TEXT_LINES_H_
-#define RIGEL_PROBLEMS_IMAGES_TEXT_LINES_H_
+//
+// A file may be compressed by gzip, and a byte order mark of UTF-8 is skipped. Text in another
+// encoding, a file larger than kMaxInputBytes (rigel/problems/input_file.h) and one that cannot be
+// read are refused with a message that names the file.
+#ifndef RIGEL_PROBLEMS_TEXT_LINES_H_
+#define RIGEL_PROBLEMS_TEXT_LINES_H_
 
 #include <cstdint>
 #include <string>
@@ -14,9 +18,14 @@ struct TextLine {
   std::string text;
 };
 
-// The lines that are not blank and do not start with '#', without blanks at their ends. False with
-// a message if the file cannot be read.
+// The lines that are not blank and do not start with '#', without blanks at their ends. For files
+// whose lines say themselves what they are of.
 bool ReadTextLines(const std::string& path, std::vector<TextLine>* lines, std::string* error);
+
+// The lines of a file in which line k is that of frame k: all, without blanks at their ends. A
+// blank line or a comment is refused, with its number: skipped it would give each later frame the
+// line of another. Blank lines at the end of the file are none.
+bool ReadFrameLines(const std::string& path, std::vector<TextLine>* lines, std::string* error);
 
 // "path:line"; a path as one line of text.
 std::string Where(const std::string& path, const TextLine& line);
@@ -29,9 +38,6 @@ std::vector<std::string_view> SplitAtBlanks(std::string_view text);
 // Between commas, without blanks around them; may be empty.
 std::vector<std::string_view> SplitAtCommas(std::string_view text);
 
-// A word of a file for a message: quoted, short and printable.
-std::string Quoted(std::string_view word);
-
 // False if the whole word is not a finite number.
 bool ParseFinite(std::string_view word, double* value);
 
@@ -40,4 +46,4 @@ bool ParseTimestamp(std::string_view word, int64_t* value);
 
 }  // namespace rigel
 
-#endif  // RIGEL_PROBLEMS_IMAGES_TEXT_LINES_H_
+#endif  // RIGEL_PROBLEMS_TEXT_LINES_H_

@@ -1,0 +1,22 @@
+#include "rigel/core/pixel_unit.h"
+
+#include <algorithm>
+
+namespace rigel {
+
+double PixelUnit(const Rig& rig) {
+  constexpr double kFocal = 450.0;
+  double shortest = kFocal;
+  for (const RigCamera& camera : rig.cameras) {
+    shortest = std::min({shortest, camera.intrinsics.fx, camera.intrinsics.fy});
+  }
+  return shortest / kFocal;
+}
+
+double DefaultThresholdPx(const Rig& rig) { return 1.5 * PixelUnit(rig); }
+
+double ThresholdPx(double threshold_px, const Rig& rig) {
+  return threshold_px == kAutoThresholdPx ? DefaultThresholdPx(rig) : threshold_px;
+}
+
+}  // namespace rigel

@@ -1,0 +1,27 @@
+// What is meant in pixels, where pixels may be of any size.
+//
+// Cameras of a few hundred pixels of focal length are what defaults in pixels are made for. With
+// normalised image coordinates (fx = 1) or small images a pixel is a larger angle, and such a
+// default is a share of the focal length instead.
+#ifndef RIGEL_CORE_PIXEL_UNIT_H_
+#define RIGEL_CORE_PIXEL_UNIT_H_
+
+#include "rigel/core/rig.h"
+
+namespace rigel {
+
+// As a threshold: DefaultThresholdPx().
+inline constexpr double kAutoThresholdPx = 0.0;
+
+// One, or 1/450 of the shortest focal length of the rig where that is less.
+double PixelUnit(const Rig& rig);
+
+// 1.5 pixels, or 1/300 of the shortest focal length where that is less.
+double DefaultThresholdPx(const Rig& rig);
+
+// `threshold_px`, or the default where it is kAutoThresholdPx.
+double ThresholdPx(double threshold_px, const Rig& rig);
+
+}  // namespace rigel
+
+#endif  // RIGEL_CORE_PIXEL_UNIT_H_

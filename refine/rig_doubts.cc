@@ -1,0 +1,158 @@
+#include "rigel/refine/rig_doubts.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "rigel/core/pixel_unit.h"
+
+namespace rigel {
+namespace {
+
+// The smaller camera first: matches between two cameras in either order.
+using Cameras = std::pair<int, int>;
+struct Fit {
+  int rows = 0;
+  int inliers = 0;
+  double Share() const { return inliers / static_cast<double>(rows); }
+};
+
+std::map<Cameras, Fit> FitsOf(const MotionEstimate& estimate) {
+  std::map<Cameras, Fit> fits;
+  for (const CameraPairFit& f : estimate.refine.camera_pairs) {
+    Fit& fit = fits[std::minmax(f.camera1, f.camera2)];
+    fit.rows += f.rows;
+    fit.inliers += f.inliers;
+  }
+  return fits;
+}
+
+std::string CountOf(const Fit& fit) {
+  return std::to_string(fit.inliers) + " of " + std::to_string(fit.rows) + " fit";
+}
+
+std::vector<int> FrozenCameras(const FramePair& pair) {
+  constexpr double kMoving = 10.0;
+  constexpr double kNearlyAll = 0.8;
+  if (pair.rig.size() < 2) return {};
+  struct Counts {
+    int rows = 0, still = 0, moving = 0;
+  };
+  std::vector<Counts> counts(pair.rig.size());
+  const double limit = kMinMatchNoisePx * PixelUnit(pair.rig);
+  for (const Match& match : pair.matches) {
+    if (!match.IsIntra()) continue;
+    Counts& c = counts[match.camera1];
+    const double moved2 = (match.pixel2 - match.pixel1).squaredNorm();
+    ++c.rows;
+    c.still += moved2 <= limit * limit ? 1 : 0;
+    c.moving += moved2 > kMoving * kMoving * limit * limit ? 1 : 0;
+  }
+  const bool any_moves = std::any_of(counts.begin(), counts.end(), [](const Counts& c) {
+    return c.rows >= kMinDoubtRows && 2 * c.moving > c.rows;
+  });
+  std::vector<int> frozen;
+  for (int k = 0; k < pair.rig.size() && any_moves; ++k) {
+    if (counts[k].rows >= kMinDoubtRows && counts[k].still >= kNearlyAll * counts[k].rows) {
+      frozen.push_back(k);
+    }
+  }
+  return frozen;
+}
+
+// How many matches fit the better of the two swaps; nothing if neither is better by far.
+std::optional<int> InliersIfSwapped(const EstimateOptions& given, const FramePair& pair,
+                                    const MotionEstimate& estimate, const Cameras& cameras) {
+  constexpr double kFewerOutliers = 0.75;
+  constexpr int kMoreInliers = 6;
+  EstimateOptions options = given;
+  options.check_rig = false;
+  options.ransac.max_iterations = std::min(given.ransac.max_iterations, kMaxSwapIterations);
+  const int total = static_cast<int>(pair.matches.size());
+  const int outliers = total - estimate.num_inliers;
+  int best = 0;
+  const auto try_swapped = [&](bool intrinsics) {
+    FramePair swapped = pair;
+    RigCamera& a = swapped.rig.cameras[cameras.first];
+    RigCamera& b = swapped.rig.cameras[cameras.second];
+    std::swap(a, b);
+    if (!intrinsics) std::swap(a.intrinsics, b.intrinsics);
+    const MotionEstimate other = EstimateMotion(options, swapped);
+    if (other.status == EstimateStatus::kSuccess) best = std::max(best, other.num_inliers);
+  };
+  try_swapped(false);
+  const PinholeCamera& first = pair.rig.cameras[cameras.first].intrinsics;
+  const PinholeCamera& second = pair.rig.cameras[cameras.second].intrinsics;
+  const bool alike = first.fx == second.fx && first.fy == second.fy && first.cx == second.cx &&
+                     first.cy == second.cy;
+  if (!alike) try_swapped(true);
+  if (best < estimate.num_inliers + kMoreInliers || total - best > kFewerOutliers * outliers) {
+    return std::nullopt;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<RigDoubt> FindRigDoubts(const EstimateOptions& options, const FramePair& pair,
+                                    const MotionEstimate& estimate) {
+  std::vector<RigDoubt> doubts;
+  const std::vector<int> frozen = FrozenCameras(pair);
+  const auto is_frozen = [&](int camera) {
+    return std::find(frozen.begin(), frozen.end(), camera) != frozen.end();
+  };
+  for (const int k : frozen) {
+    doubts.push_back({RigDoubtKind::kFrozen, k, k,
+                      "camera " + std::to_string(k) +
+                          " shows the same image twice while others move: is it frozen?"});
+  }
+  std::map<Cameras, Fit> fits = FitsOf(estimate);
+  double most = 0.0;
+  int inter_inliers = 0;
+  std::optional<Cameras> most_rows;  // between two cameras
+  for (const auto& [cameras, fit] : fits) {
+    if (fit.rows < kMinDoubtRows) continue;
+    most = std::max(most, fit.Share());
+    if (cameras.first == cameras.second) continue;
+    inter_inliers += fit.inliers;
+    if (!most_rows || fit.rows > fits[*most_rows].rows) most_rows = cameras;
+  }
+  std::vector<Cameras> to_swap;
+  for (const auto& [cameras, fit] : fits) {
+    const bool few = fit.rows >= kMinDoubtRows && most >= kMostFit && fit.Share() < kFewFit * most;
+    if (!few || is_frozen(cameras.first) || is_frozen(cameras.second)) continue;
+    const bool intra = cameras.first == cameras.second;
+    const std::string name =
+        intra ? "camera " + std::to_string(cameras.first)
+              : "cameras " + std::to_string(cameras.first) + "-" + std::to_string(cameras.second);
+    doubts.push_back({RigDoubtKind::kFewFit, cameras.first, cameras.second,
+                      name + ": " + CountOf(fit) +
+                          (intra ? "; are its intrinsics another's, is a quaternion x y z w?"
+                                 : "; are they swapped, is a quaternion x y z w?")});
+    if (!intra) to_swap.push_back(cameras);
+  }
+  const RefineSummary& refine = estimate.refine;
+  const bool length_is_missing = refine.IsSolutionUsable() && refine.RigDirectionKnown() &&
+                                 !refine.scale_free && options.refine.scale == ScaleMode::kAuto &&
+                                 refine.camera_pairs.size() > 1 && inter_inliers >= kMinDoubtRows &&
+                                 10 * inter_inliers >= estimate.num_inliers;
+  if (to_swap.empty() && length_is_missing && frozen.empty()) to_swap.push_back(*most_rows);
+  // One pair of cameras that is swapped makes others fit badly: enough to look at three.
+  constexpr size_t kMaxSwaps = 3;
+  for (size_t k = 0; k < std::min(to_swap.size(), kMaxSwaps); ++k) {
+    const auto inliers = InliersIfSwapped(options, pair, estimate, to_swap[k]);
+    if (!inliers) continue;
+    const auto [a, b] = to_swap[k];
+    doubts.push_back({RigDoubtKind::kSwapped, a, b,
+                      "with cameras " + std::to_string(a) + " and " + std::to_string(b) +
+                          " swapped " + std::to_string(*inliers) + " of " +
+                          std::to_string(pair.matches.size()) + " matches fit instead of " +
+                          std::to_string(estimate.num_inliers) +
+                          ": are they, or is the sign of their baseline wrong?"});
+  }
+  return doubts;
+}
+
+}  // namespace rigel
