@@ -40,6 +40,19 @@ Json MotionJson(const Pose& pose) {
   return {{"q_wxyz", {q.w(), q.x(), q.y(), q.z()}}, {"t", {pose.t.x(), pose.t.y(), pose.t.z()}}};
 }
 
+// What became of the solvers of auto: of the last ones nothing, mostly.
+Json TrialsJson(const std::vector<SolverTrial>& trials) {
+  Json entries = Json::array();
+  for (const SolverTrial& trial : trials) {
+    if (trial.iterations == 0 && trial.note == kNotNeeded) continue;
+    entries.push_back({{"solver", trial.solver},
+                       {"iterations", trial.iterations},
+                       {"inliers", trial.num_inliers},
+                       {"note", trial.note}});
+  }
+  return entries;
+}
+
 void PutFinite(const char* key, double value, Json* object) {
   if (std::isfinite(value) && value >= 0) (*object)[key] = value;
 }
@@ -106,7 +119,11 @@ std::string EstimateTable(const EstimateReport& report) {
   }
   for (size_t k = 0; k < pairs.size(); ++k) {
     const MotionEstimate& e = report.estimates[k];
-    if (e.refine.IsSolutionUsable() && !e.refine.translation_observable) {
+    // A motion that auto doubts: that of another solver is told on stderr.
+    if (e.HasMotion() && e.doubtful && e.trials.size() > 1) {
+      text += ShortName(pairs[k].name) + ": doubtful: " + e.doubt + "\n";
+    }
+    if (e.HasMotion() && e.refine.IsSolutionUsable() && !e.refine.translation_observable) {
       text += ShortName(pairs[k].name) + ": " + e.refine.ObservabilityReport() + "\n";
     }
   }
@@ -162,9 +179,12 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
     if (stopped) entry["stopped"] = StopReasonName(e.stopped);
     if (pairs[k].time1 && pairs[k].time2) entry["time"] = {*pairs[k].time1, *pairs[k].time2};
     entry["matches"] = report.matches[k].all;
+    if (e.trials.size() > 1) entry["auto"] = TrialsJson(e.trials);
     if (e.HasMotion()) {
       entry["solver"] = e.solver;
       entry["inliers"] = e.num_inliers;
+      entry["doubtful"] = e.doubtful;
+      if (e.doubtful) entry["reason"] = e.doubt;
       entry["iterations"] = e.iterations;
       if (times) entry["time_ms"] = {{"ransac", e.ransac_ms}, {"refine", e.refine_ms}};
       entry["raw"] = MotionJson(e.raw);

@@ -50,8 +50,8 @@ std::map<std::string, Args> FlagsOfTools() {
         "resume", "sequence", "stride", "threads"}},
       {"simulate",
        {"every", "inter_share", "match_scores", "motion", "moving_share", "noise_px", "num_cameras",
-        "num_matches", "outlier_share", "output", "pairs", "poses", "rotation_axis", "rotation_deg",
-        "seed", "threads"}}};
+        "num_matches", "outlier_share", "output", "pairs", "poses", "ring", "rotation_axis",
+        "rotation_deg", "seed", "threads"}}};
 }
 
 // A run that would succeed but for what is added to it and that the files are not there, nor can be
