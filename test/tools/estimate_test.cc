@@ -63,7 +63,7 @@ TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
                                 "time_ms", "raw", "refined", "median_residual_px", "noise_px",
                                 "rotation_observable", "translation_observable", "scale_observable",
                                 "rotation_sd_deg", "translation_dir_sd_deg", "covariance",
-                                "relative_scale_sd", "weakest_direction"));
+                                "camera_pairs", "relative_scale_sd", "weakest_direction"));
     EXPECT_EQ(pair["status"], "ok");
     EXPECT_EQ(pair["matches"], 200);
     EXPECT_GE(pair["inliers"], 150);
