@@ -73,10 +73,10 @@ std::string Ordinal(int n) {
 std::string SizeText(const Json& options) {
   std::string text;
   if (options.contains("every")) {
-    const int every = options.at("every").get<int>();
+    const int every = JsonInteger(options.at("every"), 1);
     text = every == 1 ? "every motion" : "every " + Ordinal(every) + " motion";
   } else {
-    text = std::to_string(options.at("pairs").get<int>()) + " pairs a point, " +
+    text = std::to_string(JsonInteger(options.at("pairs"), 1)) + " pairs a point, " +
            (options.at("quick").get<bool>() ? "the coarse grid of --quick" : "the full grid");
   }
   return text + ", seed " + std::to_string(options.at("seed").get<uint64_t>());

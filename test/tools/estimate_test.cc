@@ -54,7 +54,7 @@ TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
   ASSERT_EXIT_CODE(run, 0);
   EXPECT_THAT(run.err, IsEmpty());
   const Json report = ParseReport(run.out);
-  EXPECT_THAT(Keys(report), UnorderedElementsAre("format", "options", "pairs"));
+  EXPECT_THAT(Keys(report), UnorderedElementsAre("format", "rigel_version", "options", "pairs"));
   EXPECT_EQ(report["format"], "rigel-estimate 1");
   EXPECT_EQ(report["options"]["solver"], "4pt-axis");
   EXPECT_EQ(report["options"]["confidence"], "0.9999");
