@@ -40,6 +40,19 @@ Json MotionJson(const Pose& pose) {
   return {{"q_wxyz", {q.w(), q.x(), q.y(), q.z()}}, {"t", {pose.t.x(), pose.t.y(), pose.t.z()}}};
 }
 
+// What became of the solvers of auto: of the last ones nothing, mostly.
+Json TrialsJson(const std::vector<SolverTrial>& trials) {
+  Json entries = Json::array();
+  for (const SolverTrial& trial : trials) {
+    if (trial.iterations == 0 && trial.note == kNotNeeded) continue;
+    entries.push_back({{"solver", trial.solver},
+                       {"iterations", trial.iterations},
+                       {"inliers", trial.num_inliers},
+                       {"note", trial.note}});
+  }
+  return entries;
+}
+
 void PutFinite(const char* key, double value, Json* object) {
   if (std::isfinite(value) && value >= 0) (*object)[key] = value;
 }
@@ -64,7 +77,9 @@ std::string EstimateTable(const EstimateReport& report) {
     }
     const bool refined = e.refine.IsSolutionUsable();
     // Where no refinement was asked for, nothing is known of what can be observed.
-    const bool not_asked = e.status == EstimateStatus::kSuccess && !refined;
+    const bool stopped = e.stopped != StopReason::kNone;
+    const bool not_asked = (e.status == EstimateStatus::kSuccess && !refined) ||
+                           e.refine.termination == Termination::kStopped;
     const bool rotation = not_asked || e.refine.rotation_observable;
     const bool direction = not_asked || DirectionKnown(e);
     const bool scale =
@@ -76,7 +91,8 @@ std::string EstimateTable(const EstimateReport& report) {
       return refined && radians >= 0 ? FormatFitted(RadToDeg(radians), 3, 5) : std::string("-");
     };
     table.AddRow(
-        {ShortName(pairs[k].name), EstimateStatusName(e.status),
+        {ShortName(pairs[k].name),
+         stopped ? StopReasonName(e.stopped) : EstimateStatusName(e.status),
          rotation ? FormatFitted(RadToDeg(LogSO3(e.pose.R).norm()), 3, 6) : "-",
          rotation ? sigma(e.refine.rotation_sigma) : "-", direction ? FormatNumber(d.x(), 4) : "-",
          direction ? FormatNumber(d.y(), 4) : "-", direction ? FormatNumber(d.z(), 4) : "-",
@@ -95,14 +111,19 @@ std::string EstimateTable(const EstimateReport& report) {
   }
   if (any_not_asked) {
     text +=
-        "\n\"-\": not computed. Without a refinement it is not known what the matches determine: "
+        "\n\"-\": not computed. Without a finished refinement it is not known what the matches "
+        "determine: "
         "the "
         "direction\nof t may mean nothing; |t| is left out where no match is between two "
         "cameras.\n";
   }
   for (size_t k = 0; k < pairs.size(); ++k) {
     const MotionEstimate& e = report.estimates[k];
-    if (e.refine.IsSolutionUsable() && !e.refine.translation_observable) {
+    // A motion that auto doubts: that of another solver is told on stderr.
+    if (e.HasMotion() && e.doubtful && e.trials.size() > 1) {
+      text += ShortName(pairs[k].name) + ": doubtful: " + e.doubt + "\n";
+    }
+    if (e.HasMotion() && e.refine.IsSolutionUsable() && !e.refine.translation_observable) {
       text += ShortName(pairs[k].name) + ": " + e.refine.ObservabilityReport() + "\n";
     }
   }
@@ -144,7 +165,7 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
   json["options"] = Json::object();
   for (const auto& [name, value] : report.options) json["options"][name] = value;
   // Pair by pair: a tree of many would be large.
-  std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
+  std::string text = JsonText(json, 2);
   text.resize(text.size() - 2);  // the line break and bracket of the end
   text += ",\n  \"pairs\": [";
   for (size_t k = 0; k < pairs.size(); ++k) {
@@ -153,20 +174,25 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
     entry["pair"] = pairs[k].name;
     if (!pairs[k].sequence.empty()) entry["sequence"] = pairs[k].sequence;
     entry["status"] = EstimateStatusName(e.status);
-    if (e.status != EstimateStatus::kSuccess) entry["message"] = e.message;
+    const bool stopped = e.stopped != StopReason::kNone;
+    if (e.status != EstimateStatus::kSuccess || stopped) entry["message"] = e.message;
+    if (stopped) entry["stopped"] = StopReasonName(e.stopped);
     if (pairs[k].time1 && pairs[k].time2) entry["time"] = {*pairs[k].time1, *pairs[k].time2};
     entry["matches"] = report.matches[k].all;
+    if (e.trials.size() > 1) entry["auto"] = TrialsJson(e.trials);
     if (e.HasMotion()) {
       entry["solver"] = e.solver;
       entry["inliers"] = e.num_inliers;
+      entry["doubtful"] = e.doubtful;
+      if (e.doubtful) entry["reason"] = e.doubt;
       entry["iterations"] = e.iterations;
       if (times) entry["time_ms"] = {{"ransac", e.ransac_ms}, {"refine", e.refine_ms}};
       entry["raw"] = MotionJson(e.raw);
       if (e.refine.IsSolutionUsable()) {
         const RefineSummary& r = e.refine;
         entry["refined"] = MotionJson(e.pose);
-        entry["median_residual_px"] = r.median_residual_px;
-        entry["noise_px"] = r.noise_px;
+        PutFinite("median_residual_px", r.median_residual_px, &entry);
+        PutFinite("noise_px", r.noise_px, &entry);
         entry["rotation_observable"] = r.rotation_observable;
         entry["translation_observable"] = r.translation_observable;
         entry["scale_observable"] = r.scale_observable;
@@ -197,7 +223,7 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
       }
     }
     text += k == 0 ? "\n    " : ",\n    ";
-    for (const char c : entry.dump(2, ' ', false, Json::error_handler_t::replace)) {
+    for (const char c : JsonText(entry, 2)) {
       text += c;
       if (c == '\n') text += "    ";
     }

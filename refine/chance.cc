@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Geometry>
 
 namespace rigel {
 
-bool ExceedsChance(const GroupedMatches& matches, int num_inliers, double threshold_px,
-                   double num_tries) {
+bool ExceedsChance(const GroupedMatches& matches, const Pose& pose, int num_inliers,
+                   double threshold_px, double num_tries) {
   constexpr int kFree = 6;
+  constexpr double kFalseAlarms = 1e-3;
   const int n = matches.size() - kFree;
   const int k = num_inliers - kFree;
   if (n <= 0 || k <= 0) return false;
@@ -28,12 +30,18 @@ bool ExceedsChance(const GroupedMatches& matches, int num_inliers, double thresh
     const double band = 2.0 * threshold_px * std::hypot(width, height);
     q += std::min(1.0, band / (width * height)) * group.size / matches.size();
   }
+  constexpr double kNoBound = std::numeric_limits<double>::infinity();
+  constexpr double kNear = 2.0, kFar = 5.0;  // thresholds
+  int near = 0, far = 0;
+  matches.Score(pose, kNear * threshold_px, kNoBound, &near);
+  matches.Score(pose, kFar * threshold_px, kNoBound, &far);
+  q = std::max(q, (far - near) / ((kFar - kNear) * matches.size()));
   const double share = k / static_cast<double>(n);
   if (share <= q) return false;
   const double divergence =
       share * std::log(share / q) +
       (share < 1.0 ? (1.0 - share) * std::log((1.0 - share) / (1.0 - q)) : 0.0);
-  return n * divergence > std::log(num_tries);
+  return n * divergence > std::log(num_tries / kFalseAlarms);
 }
 
 }  // namespace rigel

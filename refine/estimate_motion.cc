@@ -178,21 +178,22 @@ MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pai
     }
   }
   estimate.inlier_ratio = estimate.num_inliers / static_cast<double>(matches.size());
+  const Pose about_centre = MotionOfPoint(estimate.pose, centre);
   const bool exceeds_chance =
       estimate.refine.IsSolutionUsable()
           ? estimate.refine.exceeds_chance
-          : ExceedsChance(matches, estimate.num_inliers, options.ransac.threshold_px,
+          : ExceedsChance(matches, about_centre, estimate.num_inliers, options.ransac.threshold_px,
                           static_cast<double>(search.hypotheses));
   if (!exceeds_chance) {
     estimate.status = EstimateStatus::kNoConsensus;
     estimate.message = std::to_string(estimate.num_inliers) + " of " +
                        std::to_string(matches.size()) +
                        " matches agree on a motion, no more than chance allows";
+    if (estimate.stopped != StopReason::kNone) estimate.message += "; " + stop.Message();
     return estimate;
   }
   const Doubt doubt =
-      FindDoubt(pair.prior, *search.solver, MotionOfPoint(estimate.pose, centre), matches,
-                options.ransac.threshold_px);
+      FindDoubt(pair.prior, *search.solver, about_centre, matches, options.ransac.threshold_px);
   estimate.doubtful = doubt.Any();
   estimate.doubt = doubt.Reason();
   if (estimate.status == EstimateStatus::kSuccess && options.refine_motion && options.check_rig &&

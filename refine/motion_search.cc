@@ -220,7 +220,7 @@ class Search {
       SolverTrial& trial = trials_[k];
       if (trial.solver.empty()) {
         trial.solver = solvers_[k]->name;
-        trial.note = "not needed";
+        trial.note = kNotNeeded;
       }
       if (attempts_[k] == nullptr) continue;
       const RansacResult<Solution>& result = attempts_[k]->result();
@@ -233,7 +233,11 @@ class Search {
       if (search.solver == nullptr || static_cast<int>(k) == best) search.solver = solvers_[k];
       if (static_cast<int>(k) != best) continue;
       search.best = result;
-      if (trial.note.empty()) trial.note = "chosen";
+      const Doubt doubt = DoubtOf(*attempts_[k]);
+      trial.note =
+          "chosen: " + (doubt.Any() ? "best score, but " + doubt.Reason()
+                                    : std::to_string(doubt.num_inliers) + " of " +
+                                          std::to_string(doubt.num_matches) + " matches agree");
     }
     search.trials = std::move(trials_);
     return search;

@@ -59,12 +59,13 @@ Doubt FindDoubt(const MotionPrior& prior, const SolverInfo& solver, const Pose& 
                 const GroupedMatches& matches, double threshold_px);
 
 // What became of one of the solvers.
+inline constexpr char kNotNeeded[] = "not needed";  // the note where those before were enough
 struct SolverTrial {
   std::string solver;
   int iterations = 0;
   int64_t hypotheses = 0;
   int num_inliers = 0;  // of the best motion that it led to
-  std::string note;     // why it was chosen, left or not tried
+  std::string note;     // why it was chosen, doubted or not tried
 };
 
 }  // namespace rigel

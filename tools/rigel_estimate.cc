@@ -174,6 +174,27 @@ bool WriteTrajectories(const std::vector<Trajectory>& trajectories,
   return true;
 }
 
+// Of a solver that was named; the table says it of auto's.
+void ReportDoubts(const EstimateReport& report) {
+  if (FLAGS_solver == kAutoSolver) return;
+  int count = 0;
+  size_t first = 0;
+  for (size_t k = report.estimates.size(); k-- > 0;) {
+    if (!report.estimates[k].HasMotion() || !report.estimates[k].doubtful) continue;
+    ++count;
+    first = k;
+  }
+  if (count == 0) return;
+  std::cerr << "doubtful: " << count << " of " << report.estimates.size()
+            << (report.estimates.size() == 1 ? " motion, " : " motions, ")
+            << (count == 1 ? "" : "the first ") << PrintablePath(report.pairs[first].name) << ": "
+            << report.estimates[first].doubt << "; "
+            << (FindSolver(FLAGS_solver)->prior == PriorKind::kNone
+                    ? "are most of the matches outliers?"
+                    : "is the prior right? --solver=auto does without it where it is not")
+            << "\n";
+}
+
 int Run() {
   ComparisonOptions options;
   std::string error;
@@ -215,7 +236,9 @@ int Run() {
   std::vector<BatchItem<Estimated>> items;
   {
     Progress progress(FLAGS_solver, static_cast<int>(input.paths.size()));
+    estimate.refine.progress = ShowRefinement(&progress);
     items = RunBatch(options, input.paths, input.first, work, [&] { progress.Step(); });
+    estimate.refine.progress = nullptr;
   }
   EstimateReport report;
   std::vector<int> positions;
@@ -257,6 +280,7 @@ int Run() {
     ok = false;
   }
 
+  ReportDoubts(report);
   for (const std::string& line : RigDoubtLines(report)) std::cerr << line << "\n";
   report.refined = estimate.refine_motion;
   // An empty shard has nothing to chain, and nothing is wrong with it.

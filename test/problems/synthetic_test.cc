@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -369,6 +370,50 @@ TEST(Synthetic, ScoresOfTrueMatchesAreLowerAndChangeNothingElse) {
   }
   EXPECT_NEAR(good, 0.4, 0.03);
   EXPECT_NEAR(bad, 0.8 * 11.0 / 12.0, 0.03);
+}
+
+TEST(Synthetic, ARingLooksOutwardsAllRound) {
+  for (const int cameras : {1, 4, 8, 16}) {
+    SceneOptions options;
+    options.ring = true;
+    options.num_cameras = cameras;
+    options.noise_px = 0.0;
+    options.rotation_deg = 30.0;
+    options.inter_share = cameras >= 4 ? 0.5 : 0.0;
+    const FramePair pair = ScenePair(options, cameras);
+    ASSERT_EQ(pair.rig.size(), cameras);
+    for (int k = 0; k < cameras; ++k) {
+      const RigCamera& camera = pair.rig.cameras[k];
+      EXPECT_NEAR(camera.s.norm(), 1.0, 1e-12);
+      EXPECT_NEAR(camera.s.dot(camera.Q.col(2)), 1.0, 1e-12);  // ahead is outwards
+      EXPECT_NEAR(camera.Q(1, 1), 1.0, 1e-12);                 // the image's y is down
+      const RigCamera& next = pair.rig.cameras[(k + 1) % cameras];
+      EXPECT_NEAR(camera.s.dot(next.s), std::cos(2.0 * std::acos(-1.0) / cameras), 1e-12);
+    }
+    std::set<int> seen;
+    for (const Match& m : pair.matches) {
+      seen.insert(m.camera1);
+      const int apart = (m.camera2 - m.camera1 + cameras) % cameras;
+      EXPECT_TRUE(apart == 0 || apart == 1 || apart == cameras - 1);
+    }
+    EXPECT_EQ(seen.size(), static_cast<size_t>(cameras));
+    std::vector<double> errors;
+    GroupedMatches(pair.rig, pair.matches).SquaredErrors(*pair.truth, &errors);
+    EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 1e-16);
+  }
+  SceneOptions options;
+  options.ring = true;
+  options.num_cameras = kMaxRing + 1;
+  std::string error;
+  EXPECT_FALSE(options.IsValid(&error));
+  EXPECT_THAT(error, HasSubstr("1 to 16"));
+  // Four cameras of 77 degrees see nothing in common while the body does not turn.
+  options.num_cameras = 4;
+  options.inter_share = 0.5;
+  options.rotation_deg = 1.0;
+  FramePair pair;
+  EXPECT_FALSE(MakeScenePair(options, 0, &pair, &error));
+  EXPECT_THAT(error, HasSubstr("hardly any point"));
 }
 
 }  // namespace

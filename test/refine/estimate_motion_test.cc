@@ -144,7 +144,7 @@ TEST(EstimateMotion, RefusesWrongOptionsWithAMessage) {
   expect_invalid(With("5pt"), pair, "4pt-axis");  // names those that there are
   expect_invalid(With(""), pair, "solver");
   EstimateOptions options;
-  options.ransac.threshold_px = 0;
+  options.ransac.threshold_px = -1;
   expect_invalid(options, pair, "threshold_px");
   options = EstimateOptions();
   options.ransac.confidence = 1.0;
@@ -213,8 +213,8 @@ TEST(EstimateMotion, OneMatchManyTimesOverHasNoSolution) {
   }
 }
 
-// Enough for RANSAC, too few for six free parameters: its motion is handed out, and said to be so.
-TEST(EstimateMotion, AMotionThatCannotBeRefinedIsRansacs) {
+// Four matches agree on a motion of four whatever they are.
+TEST(EstimateMotion, WhatOneSampleAgreesOnIsNoConsensus) {
   SceneOptions scene;
   scene.noise_px = 0.0;
   scene.num_matches = 4;
@@ -222,16 +222,37 @@ TEST(EstimateMotion, AMotionThatCannotBeRefinedIsRansacs) {
   int seen = 0;
   for (int index = 0; index < 20; ++index) {
     const FramePair pair = ScenePair(scene, index);
-    const MotionEstimate estimate = EstimateMotion(With("4pt"), pair);
-    if (estimate.status == EstimateStatus::kNoSolution) continue;
-    ++seen;
-    EXPECT_EQ(estimate.status, EstimateStatus::kNotRefined) << estimate.message;
-    EXPECT_TRUE(estimate.HasMotion());
-    EXPECT_THAT(estimate.message, HasSubstr("not refined"));
-    EXPECT_TRUE(estimate.pose.AllFinite());
-    EXPECT_EQ(estimate.num_inliers, 4);
+    for (const bool refined : {true, false}) {
+      EstimateOptions options = With("4pt");
+      options.refine_motion = refined;
+      const MotionEstimate estimate = EstimateMotion(options, pair);
+      if (estimate.status == EstimateStatus::kNoSolution) continue;
+      ++seen;
+      EXPECT_EQ(estimate.status, EstimateStatus::kNoConsensus) << estimate.message;
+      EXPECT_FALSE(estimate.HasMotion());
+      EXPECT_THAT(estimate.message, HasSubstr("4 of 4 matches"));
+      EXPECT_TRUE(estimate.pose.AllFinite());
+      EXPECT_EQ(estimate.num_inliers, 4);
+    }
   }
-  EXPECT_GE(seen, 15);
+  EXPECT_GE(seen, 30);
+}
+
+// Standing still there is no reference match: RANSAC's motion is handed out, and said to be so.
+TEST(EstimateMotion, AMotionThatCannotBeRefinedIsRansacs) {
+  SceneOptions scene;
+  scene.noise_px = 1e-5;
+
+  FramePair pair;
+  std::string error;
+  ASSERT_TRUE(MakeScenePair(scene, 0, Pose(), &pair, &error)) << error;
+  EstimateOptions options = With("4pt-axis");
+  options.refine.form = RefineForm::kDepths;
+  const MotionEstimate estimate = EstimateMotion(options, pair);
+  EXPECT_EQ(estimate.status, EstimateStatus::kNotRefined) << estimate.message;
+  EXPECT_TRUE(estimate.HasMotion());
+  EXPECT_THAT(estimate.message, HasSubstr("not refined"));
+  EXPECT_TRUE(estimate.pose.AllFinite());
 }
 
 TEST(EstimateMotion, TheSeedFixesTheResult) {

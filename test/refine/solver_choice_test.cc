@@ -1,6 +1,7 @@
 // The solver "auto": what it takes, and that a wrong prior costs time and not accuracy.
 #include "rigel/refine/solver_choice.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -92,8 +93,7 @@ TEST(SolverChoice, AWrongPriorCostsNoAccuracy) {
     options.refine.noise_px = scene.noise_px;
     const MotionEstimate right = EstimateMotion(options, pair);
     ASSERT_EQ(right.status, EstimateStatus::kSuccess);
-    // Where the first of the priors is wrong, one that needs none comes next.
-    EXPECT_EQ(right.solver, index % 2 == 0 ? "3pt" : "5pt+1") << index;
+    EXPECT_EQ(right.solver, index % 2 == 0 ? "3pt" : "4pt") << index;
     const Eigen::Matrix3d off = ExpSO3(DegToRad(20.0) * Eigen::Vector3d::UnitX());
     pair.prior.gravity2 = off * *pair.prior.gravity2;
     pair.prior.axis = off * *pair.prior.axis;
@@ -123,6 +123,74 @@ TEST(SolverChoice, WithAnExactPriorTheFirstStands) {
   EXPECT_EQ(EstimateMotion(options, pair).trials.size(), 1u);
   pair.prior = MotionPrior();
   EXPECT_NE(EstimateMotion(options, pair).status, EstimateStatus::kSuccess);
+}
+
+// Rings of as many cameras as matches: of no camera pair are there five.
+TEST(SolverChoice, RigsWithoutFiveMatchesInOneCameraPairAreSolved) {
+  for (const int cameras : {8, 16}) {
+    SceneOptions scene;
+    scene.ring = true;
+    scene.num_cameras = cameras;
+    scene.num_matches = 4 * cameras;
+    scene.rotation_axis = RotationAxisPattern::kRandom;
+    scene.rotation_deg = 12.0;
+    scene.motion = MotionPattern::kRandom;
+    for (const bool wrong_prior : {false, true}) {
+      FramePair pair = ScenePair(scene, cameras);
+      pair.prior = MotionPrior();
+      if (wrong_prior) pair.prior.axis = Eigen::Vector3d::UnitY();
+      const MotionEstimate estimate = EstimateMotion(EstimateOptions(), pair);
+      ASSERT_EQ(estimate.status, EstimateStatus::kSuccess) << estimate.message;
+      EXPECT_EQ(estimate.solver, "6pt-ventura");
+      EXPECT_LT(RotationErrorDeg(*pair.truth, estimate.pose), 0.3) << cameras;
+      bool told = false;
+      for (const SolverTrial& trial : estimate.trials) {
+        told = told || (trial.solver == "5pt+1" && trial.note == "no camera pair has 5 matches");
+      }
+      EXPECT_TRUE(told);
+      EXPECT_FALSE(estimate.doubtful) << estimate.doubt;
+    }
+  }
+}
+
+// A body whose down is z, and a prior that says it is y.
+TEST(SolverChoice, AWrongAxisIsToldAndAutoFindsTheMotion) {
+  for (int index = 0; index < 5; ++index) {
+    SceneOptions scene;
+    scene.num_matches = 400;
+    scene.rotation_deg = 12.0;
+    FramePair pair = ScenePair(scene, index);
+    pair.prior.gravity1 = pair.prior.gravity2 = Eigen::Vector3d::UnitZ();
+    pair.prior.axis = pair.prior.normal = Eigen::Vector3d::UnitZ();
+    EstimateOptions options;
+    const MotionEstimate found = EstimateMotion(options, pair);
+    ASSERT_EQ(found.status, EstimateStatus::kSuccess) << found.message;
+    EXPECT_EQ(found.solver, "5pt+1");
+    EXPECT_LT(RotationErrorDeg(*pair.truth, found.pose), 0.2);
+    EXPECT_FALSE(found.doubtful) << found.doubt;
+    EXPECT_THAT(found.trials[0].note, HasSubstr("doubtful: "));
+    options.solver = "4pt-axis";
+    options.ransac.max_iterations = 1000;
+    const MotionEstimate wrong = EstimateMotion(options, pair);
+    if (!wrong.HasMotion()) continue;
+    EXPECT_TRUE(wrong.doubtful);
+    EXPECT_NE(wrong.doubt, "");
+  }
+}
+
+// All together make no more iterations than one alone may.
+TEST(SolverChoice, TheSolversShareOneBudget) {
+  SceneOptions scene;
+  scene.outlier_share = 1.0;
+  const FramePair pair = ScenePair(scene, 3);
+  for (const int budget : {1, 7, 150, 1000}) {
+    EstimateOptions options;
+    options.ransac.max_iterations = budget;
+    const MotionEstimate estimate = EstimateMotion(options, pair);
+    EXPECT_LE(estimate.iterations, budget);
+    EXPECT_GE(estimate.iterations, std::min(budget, 100));
+    EXPECT_FALSE(estimate.HasMotion()) << budget;
+  }
 }
 
 }  // namespace

@@ -52,8 +52,8 @@ std::map<std::string, Args> FlagsOfTools() {
         "resume", "sequence", "stride", "threads"}},
       {"simulate",
        {"every", "inter_share", "match_scores", "motion", "moving_share", "noise_px", "num_cameras",
-        "num_matches", "outlier_share", "output", "pairs", "poses", "rotation_axis", "rotation_deg",
-        "seed", "threads"}}};
+        "num_matches", "outlier_share", "output", "pairs", "poses", "ring", "rotation_axis",
+        "rotation_deg", "seed", "threads"}}};
 }
 
 // A run that would succeed but for what is added to it and that the files are not there, nor can be
@@ -160,11 +160,14 @@ TEST(Flags, ValueOutOfRangeIsAUsageErrorBeforeAnyFileIsRead) {
         {"--refine=most", "none, full, prior, depths, prior-depths or bundle"},
         {"--residual=pixels", "sampson, angular or algebraic"},
         {"--loss=l1", "none, huber, cauchy, tukey or truncated"},
-        {"--threshold_px=0", "threshold_px must be positive"},
-        {"--threshold_px=nan", "threshold_px must be positive"},
+        {"--threshold_px=0", "auto or a positive number"},
+        {"--threshold_px=nan", "auto or a positive number"},
+        {"--threshold_px=1.5px", "auto or a positive number"},
         {"--confidence=1", "confidence must lie in (0, 1)"},
         {"--confidence=0", "confidence must lie in (0, 1)"},
         {"--max_iterations=0", "max_iterations must be at least 1"},
+        {"--time_limit_ms=-1", "time_limit_ms=-1: expected a number from 0"},
+        {"--time_limit_ms=nan", "time_limit_ms=nan: expected a number from 0"},
         {"--threads=0", "1 to 1024"},
         {"--threads=2000", "1 to 1024"},
         {"--seed=-1", "seed"},
