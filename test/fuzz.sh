@@ -11,6 +11,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build/fuzz
 seconds=${1:?seconds in total}
 shift
+mkdir -p "$build"
 
 sanitizers=address,undefined,float-cast-overflow
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER="${CLANGXX:-clang++}" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
