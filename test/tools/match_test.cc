@@ -384,6 +384,39 @@ TEST_F(MatchTest, ImagesWithoutPartnerAreLeftOutAndSaidToBe) {
   EXPECT_NEAR(*pair.time2 - *pair.time1, 0.1, 1e-6);
 }
 
+TEST_F(MatchTest, StampsOfARecordingDifferByMicroseconds) {
+  fs::copy(Data() + "/plane", Path("plane"), fs::copy_options::recursive);
+  const std::string root = "--euroc_root=" + Path("plane");
+  std::string images;
+  for (int k = 0; k < 3; ++k) {
+    images += std::to_string(PlaneSceneTime(k) + 31000 + 1000 * k) + "," +
+              std::to_string(PlaneSceneTime(k)) + ".png\n";
+  }
+  WriteText(Path("plane/mav0/cam1/data.csv"), images);
+  const Outcome run = Euroc("out", {root});
+  ASSERT_EXIT_CODE(run, 0);
+  EXPECT_THAT(run.err, AllOf(HasSubstr("time stamps of cam0 and cam1 differ by up to 0.033 ms, "
+                                       "within 5 ms, a tenth of the frame interval"),
+                             HasSubstr("wrote 2 match files")));
+  // With another tolerance the numbers of frames would be those of others.
+  const Outcome resumed = Euroc("out", {root, "--resume", "--sync_tolerance_ms=0.0325"});
+  EXPECT_EXIT_CODE(resumed, 1);
+  EXPECT_THAT(resumed.err, HasSubstr("this run has 'sync_tolerance_ms 0.0325'"));
+  const Outcome exact = Euroc("exact", {root, "--sync_tolerance_ms=0"});
+  EXPECT_EXIT_CODE(exact, 1);
+  EXPECT_THAT(exact.err, HasSubstr("the nearest are 0.031 ms apart"));
+  EXPECT_EXIT_CODE(Euroc("wrong", {root, "--sync_tolerance_ms=-1"}), 2);
+}
+
+TEST_F(MatchTest, ABlankLineInTimesIsRefused) {
+  fs::copy(Data() + "/kitti", Path("kitti"), fs::copy_options::recursive);
+  WriteText(Path("kitti/sequences/06/times.txt"), "0\n\n0.2\n0.3\n");
+  const Outcome run = Kitti("out", {"--kitti_root=" + Path("kitti")});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("times.txt:2: a blank line, expected")));
+  EXPECT_FALSE(fs::exists(Path("out")));
+}
+
 TEST_F(MatchTest, WrongFlagsAreUsageErrorsAndLeaveNothing) {
   const std::pair<Args, const char*> wrong[] = {
       {{"--first=3", "--last=2"}, "--last: expected at least first + stride"},
@@ -399,6 +432,7 @@ TEST_F(MatchTest, WrongFlagsAreUsageErrorsAndLeaveNothing) {
       {{"--max_features=0"}, "--max_features: expected 1 to 20000"},
       {{"--threads=0"}, "--threads: expected 1 to 1024"},
       {{"--output="}, "--output is missing"},
+      {{"--sync_tolerance_ms=5"}, "--sync_tolerance_ms: KITTI has one time stamp"},
       {{"--sequence="}, "--sequence is missing"},
       {{"--sequence=../06"}, "--sequence: expected the name of a directory"},
       {{"--sequence=0 6"}, "--sequence: expected the name of a directory"},
