@@ -4,8 +4,7 @@
 // own macros say (-mavx, -march=..., EIGEN_MAX_ALIGN_BYTES), and with it every struct that holds
 // one: a program and the library it links would look for the members in different places. So
 // structs and functions that both of them see have these types, or Eigen::Vector3d and Matrix3d,
-// which Eigen never aligns. They turn into Eigen's own types and back by plain assignment. Eigen 3.4
-// wants its own for some decompositions: SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>.
+// which Eigen never aligns. They turn into Eigen's own types and back by plain assignment.
 #ifndef RIGEL_CORE_EIGEN_TYPES_H_
 #define RIGEL_CORE_EIGEN_TYPES_H_
 
