@@ -69,3 +69,47 @@ foreach(source IN LISTS examples)
   run(${${name}})
   message(STATUS "${name}: ${output}")
 endforeach()
+
+# A program compiled with other flags than the library, by each compiler there is.
+file(READ /proc/cpuinfo cpu_flags LIMIT 20000)
+foreach(compiler g++ clang++)
+  find_program(${compiler}_path ${compiler})
+  if(NOT ${compiler}_path)
+    message(STATUS "${compiler} is not installed: a program compiled with it is not tested")
+    continue()
+  endif()
+  if(rigel_CMAKE_CXX_FLAGS MATCHES "-fsanitize" AND NOT ${compiler}_path STREQUAL rigel_CMAKE_CXX_COMPILER)
+    continue()
+  endif()
+  set(build ${work}/flags_${compiler})
+  run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/flags -B ${build} -G ${rigel_CMAKE_GENERATOR}
+      -DCMAKE_MAKE_PROGRAM=${rigel_CMAKE_MAKE_PROGRAM}
+      -DCMAKE_CXX_COMPILER=${${compiler}_path}
+      -DCMAKE_CXX_FLAGS=${rigel_CMAKE_CXX_FLAGS}
+      -DCMAKE_BUILD_TYPE=${RIGEL_CONFIG}
+      -DCMAKE_RUNTIME_OUTPUT_DIRECTORY=${build}/bin
+      -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
+      "-DCMAKE_PREFIX_PATH=${prefix}\;${rigel_CMAKE_PREFIX_PATH}"
+      -DEigen3_DIR=${rigel_Eigen3_DIR}
+      -DCeres_DIR=${rigel_Ceres_DIR})
+  run(${CMAKE_COMMAND} --build ${build} --config ${RIGEL_CONFIG})
+  file(GLOB programs ${build}/bin/flags_* ${build}/bin/${RIGEL_CONFIG}/flags_*)
+  if(NOT programs)
+    message(FATAL_ERROR "no program of ${CMAKE_CURRENT_LIST_DIR}/flags was built")
+  endif()
+  foreach(program IN LISTS programs)
+    get_filename_component(name ${program} NAME)
+    if((name STREQUAL flags_avx AND NOT cpu_flags MATCHES " avx ") OR
+       (name STREQUAL flags_v3 AND NOT cpu_flags MATCHES " avx2 "))
+      message(STATUS "${compiler} ${name}: built, not run: this processor has no such instructions")
+      continue()
+    endif()
+    run(${program})
+    if(NOT DEFINED sizes)
+      set(sizes "${output}")
+    elseif(NOT sizes STREQUAL output)
+      message(FATAL_ERROR "${compiler} ${name}: sizes and alignments\n${output}and not\n${sizes}")
+    endif()
+    message(STATUS "${compiler} ${name}: runs")
+  endforeach()
+endforeach()
