@@ -8,8 +8,11 @@ bool MotionPrior::IsValid(std::string* error) const {
   const struct {
     const char* name;
     const std::optional<Eigen::Vector3d>& direction;
-  } directions[] = {
-      {"gravity1", gravity1}, {"gravity2", gravity2}, {"axis", axis}, {"normal", normal}};
+  } directions[] = {{"gravity1", gravity1},
+                    {"gravity2", gravity2},
+                    {"axis", axis},
+                    {"normal", normal},
+                    {"forward", forward}};
   for (const auto& [name, direction] : directions) {
     // Also false for NaN.
     if (direction && !(std::abs(direction->norm() - 1.0) < kMaxUnitError)) {

@@ -3,7 +3,7 @@
 // A vehicle steered by its front wheels turns about a point on the line of its rear axle. If the
 // body's origin is on that axle, a turn by a moves the origin along the chord that lies half way
 // between the two headings. With f the prior's forward direction within the plane (its sign is no
-// matter), under X_2 = R X_1 + t,
+// matter; where none is stated EstimateMotion() takes that of body_axes.h), under X_2 = R X_1 + t,
 //   R = R_y(a),   t = -rho R_y(a/2) f      (aligned; rho > 0 forwards, metres along the chord)
 // so t' = R_y(-a/2) t = -rho f does not turn, and with z = tan(a/2) a match says
 //   tau e(z) + k(z) = 0,   tau = -rho sqrt(1 + z^2),

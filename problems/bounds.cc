@@ -11,6 +11,7 @@
 #include "rigel/problems/json_text.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/match_file_words.h"
+#include "rigel/problems/printable.h"
 #include "rigel/problems/summary_json.h"
 #include "rigel/refine/solver_choice.h"
 
@@ -142,7 +143,7 @@ bool ParseStatisticBounds(std::string_view text, std::vector<StatisticBound>* bo
     if (slash != std::string_view::npos) {
       bound.solver = name.substr(0, slash);
       if (!IsSolverName(bound.solver)) {
-        *error = quoted + ": there is no solver " + match_file::Quote(bound.solver) +
+        *error = quoted + ": there is no solver " + Quoted(bound.solver) +
                  "; expected one of " + SolverNamesWithAuto();
         return false;
       }

@@ -145,7 +145,7 @@ std::string CalibrationJson(const CalibrationReport& report) {
     }
     json["gravity"] = gravity;
   }
-  return PrintableJson(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  return PrintableJson(JsonText(json, 2) + "\n");
 }
 
 std::map<std::string, std::string> PlaneLines(const PlaneCalibration& plane, bool normal,

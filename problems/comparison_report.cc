@@ -131,14 +131,14 @@ std::string ComparisonJson(const ComparisonReport& report,
   for (const auto& [name, value] : report.options) json["options"][name] = value;
   json["results"] = Json::array();
   for (const SolverSummary& s : summaries) json["results"].push_back(SummaryJson(s));
-  std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
+  std::string text = JsonText(json, 2);
   if (per_pair) {
     // Written line by line: there may be many, and a tree of them would be large.
     text.resize(text.size() - 2);  // the line break and bracket of the end
     text += ",\n  \"pair_results\": [";
     for (size_t k = 0; k < report.solvers.front().pairs.size(); ++k) {
       text += k == 0 ? "\n    " : ",\n    ";
-      text += PairJson(report, k).dump(-1, ' ', false, Json::error_handler_t::replace);
+      text += JsonText(PairJson(report, k), -1);
     }
     text += report.solvers.front().pairs.empty() ? "]\n}" : "\n  ]\n}";
   }

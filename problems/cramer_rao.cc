@@ -59,7 +59,7 @@ Matrix6d NoiseFreeInformation(double noise_px, const GroupedMatches& matches,
   }
   // To second order; where the noise is so large that this fails, the plain value is nearer.
   const Matrix6d corrected = information - excess;
-  const Eigen::LLT<Matrix6d> positive(corrected - 0.5 * information);
+  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> positive(corrected - 0.5 * information);
   return positive.info() == Eigen::Success ? corrected : information;
 }
 

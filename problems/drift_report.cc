@@ -11,6 +11,7 @@
 #include "rigel/problems/drift.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/report.h"
+#include "rigel/problems/report_json.h"
 #include "rigel/problems/table.h"
 
 namespace rigel {
@@ -155,7 +156,7 @@ std::string TrajectoriesJson(const EstimateReport& report) {
     json.push_back(entry);
   }
   std::string text;
-  for (const char c : json.dump(2, ' ', false, Json::error_handler_t::replace)) {
+  for (const char c : JsonText(json, 2)) {
     text += c;
     if (c == '\n') text += "  ";
   }

@@ -77,7 +77,9 @@ std::string EstimateTable(const EstimateReport& report) {
     }
     const bool refined = e.refine.IsSolutionUsable();
     // Where no refinement was asked for, nothing is known of what can be observed.
-    const bool not_asked = e.status == EstimateStatus::kSuccess && !refined;
+    const bool stopped = e.stopped != StopReason::kNone;
+    const bool not_asked = (e.status == EstimateStatus::kSuccess && !refined) ||
+                           e.refine.termination == Termination::kStopped;
     const bool rotation = not_asked || e.refine.rotation_observable;
     const bool direction = not_asked || DirectionKnown(e);
     const bool scale =
@@ -89,7 +91,8 @@ std::string EstimateTable(const EstimateReport& report) {
       return refined && radians >= 0 ? FormatFitted(RadToDeg(radians), 3, 5) : std::string("-");
     };
     table.AddRow(
-        {ShortName(pairs[k].name), EstimateStatusName(e.status),
+        {ShortName(pairs[k].name),
+         stopped ? StopReasonName(e.stopped) : EstimateStatusName(e.status),
          rotation ? FormatFitted(RadToDeg(LogSO3(e.pose.R).norm()), 3, 6) : "-",
          rotation ? sigma(e.refine.rotation_sigma) : "-", direction ? FormatNumber(d.x(), 4) : "-",
          direction ? FormatNumber(d.y(), 4) : "-", direction ? FormatNumber(d.z(), 4) : "-",
@@ -108,7 +111,8 @@ std::string EstimateTable(const EstimateReport& report) {
   }
   if (any_not_asked) {
     text +=
-        "\n\"-\": not computed. Without a refinement it is not known what the matches determine: "
+        "\n\"-\": not computed. Without a finished refinement it is not known what the matches "
+        "determine: "
         "the "
         "direction\nof t may mean nothing; |t| is left out where no match is between two "
         "cameras.\n";
@@ -161,7 +165,7 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
   json["options"] = Json::object();
   for (const auto& [name, value] : report.options) json["options"][name] = value;
   // Pair by pair: a tree of many would be large.
-  std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
+  std::string text = JsonText(json, 2);
   text.resize(text.size() - 2);  // the line break and bracket of the end
   text += ",\n  \"pairs\": [";
   for (size_t k = 0; k < pairs.size(); ++k) {
@@ -170,7 +174,9 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
     entry["pair"] = pairs[k].name;
     if (!pairs[k].sequence.empty()) entry["sequence"] = pairs[k].sequence;
     entry["status"] = EstimateStatusName(e.status);
-    if (e.status != EstimateStatus::kSuccess) entry["message"] = e.message;
+    const bool stopped = e.stopped != StopReason::kNone;
+    if (e.status != EstimateStatus::kSuccess || stopped) entry["message"] = e.message;
+    if (stopped) entry["stopped"] = StopReasonName(e.stopped);
     if (pairs[k].time1 && pairs[k].time2) entry["time"] = {*pairs[k].time1, *pairs[k].time2};
     entry["matches"] = report.matches[k].all;
     if (e.trials.size() > 1) entry["auto"] = TrialsJson(e.trials);
@@ -185,8 +191,8 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
       if (e.refine.IsSolutionUsable()) {
         const RefineSummary& r = e.refine;
         entry["refined"] = MotionJson(e.pose);
-        entry["median_residual_px"] = r.median_residual_px;
-        entry["noise_px"] = r.noise_px;
+        PutFinite("median_residual_px", r.median_residual_px, &entry);
+        PutFinite("noise_px", r.noise_px, &entry);
         entry["rotation_observable"] = r.rotation_observable;
         entry["translation_observable"] = r.translation_observable;
         entry["scale_observable"] = r.scale_observable;
@@ -217,7 +223,7 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
       }
     }
     text += k == 0 ? "\n    " : ",\n    ";
-    for (const char c : entry.dump(2, ' ', false, Json::error_handler_t::replace)) {
+    for (const char c : JsonText(entry, 2)) {
       text += c;
       if (c == '\n') text += "    ";
     }

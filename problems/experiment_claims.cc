@@ -55,7 +55,7 @@ std::string ClaimsJson(const std::vector<Claim>& claims) {
                               {"figures", claim.figures},
                               {"where_not", claim.why}});
   }
-  return json.dump(1) + "\n";
+  return JsonText(json, 1) + "\n";
 }
 
 }  // namespace rigel

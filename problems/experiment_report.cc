@@ -73,10 +73,10 @@ std::string Ordinal(int n) {
 std::string SizeText(const Json& options) {
   std::string text;
   if (options.contains("every")) {
-    const int every = options.at("every").get<int>();
+    const int every = JsonInteger(options.at("every"), 1);
     text = every == 1 ? "every motion" : "every " + Ordinal(every) + " motion";
   } else {
-    text = std::to_string(options.at("pairs").get<int>()) + " pairs a point, " +
+    text = std::to_string(JsonInteger(options.at("pairs"), 1)) + " pairs a point, " +
            (options.at("quick").get<bool>() ? "the coarse grid of --quick" : "the full grid");
   }
   return text + ", seed " + std::to_string(options.at("seed").get<uint64_t>());
@@ -213,11 +213,11 @@ std::string ExperimentJson(const ExperimentPlan& plan, const std::vector<Experim
   json["options"] = OptionsJson(plan);
   json["results"] = Json::array();
   // One row a line: readable, and small in a diff.
-  std::string text = json.dump(1);
+  std::string text = JsonText(json, 1);
   text.resize(text.rfind("[]"));
   text += "[";
   for (size_t k = 0; k < rows.size(); ++k) {
-    text += (k > 0 ? ",\n  " : "\n  ") + RowJson(rows[k]).dump();
+    text += (k > 0 ? ",\n  " : "\n  ") + JsonText(RowJson(rows[k]), -1);
   }
   return text + "\n ]\n}\n";
 }
@@ -296,7 +296,7 @@ std::string PointLine(const ExperimentPoint& point, const std::vector<Experiment
     entry.update(SummaryJson(row.summary));
     json["rows"].push_back(std::move(entry));
   }
-  return json.dump() + "\n";
+  return JsonText(json, -1) + "\n";
 }
 
 bool ParsePointLine(const std::string& line, ExperimentPoint* point,
@@ -353,7 +353,7 @@ std::string PlanLine(const ExperimentPlan& plan, const std::string& run) {
   json["options"] = OptionsJson(plan);
   json["solvers"] = plan.spec->solvers;
   if (!run.empty()) json["run"] = run;
-  return json.dump() + "\n";
+  return JsonText(json, -1) + "\n";
 }
 
 }  // namespace rigel

@@ -139,8 +139,8 @@ class Parser {
   }
 
   // The columns column, column + 1, ... as a vector.
-  template <int kSize>
-  bool Vector(size_t column, Eigen::Matrix<double, kSize, 1>* value) {
+  template <int kSize, int kOptions>
+  bool Vector(size_t column, Eigen::Matrix<double, kSize, 1, kOptions>* value) {
     for (int k = 0; k < kSize; ++k) {
       if (!Number(column + k, &(*value)[k])) return false;
     }

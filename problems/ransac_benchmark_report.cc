@@ -175,7 +175,7 @@ std::string RansacBenchmarkJson(const std::vector<RansacBenchmarkRow>& rows,
     Put(&entry, "static_wins", row.static_wins);
     report["results"].push_back(entry);
   }
-  return report.dump(2) + "\n";
+  return JsonText(report, 2) + "\n";
 }
 
 }  // namespace rigel

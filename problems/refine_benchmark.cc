@@ -188,7 +188,7 @@ std::string RefineBenchmarkJson(const std::vector<RefineBenchmarkRow>& rows,
                                  {"translation_dir_deg", row.translation_dir_deg},
                                  {"failures", row.failures}});
   }
-  return report.dump(2) + "\n";
+  return JsonText(report, 2) + "\n";
 }
 
 }  // namespace rigel

@@ -287,7 +287,7 @@ std::string SolverBenchmarkJson(const std::vector<SolverBenchmarkRow>& rows,
                                  {"translation_dir_deg", row.translation_dir_deg},
                                  {"prepare_us", row.prepare_us}});
   }
-  return report.dump(2) + "\n";
+  return JsonText(report, 2) + "\n";
 }
 
 }  // namespace rigel

@@ -1,6 +1,8 @@
 #include "rigel/problems/trajectory.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "rigel/core/rig_centre.h"
@@ -92,6 +94,16 @@ std::vector<double> TimesOf(const std::vector<FramePair>& pairs, size_t first, s
   return times;
 }
 
+// Whether the pair starts when the one before ends.
+bool StartsAtEnd(const FramePair& before, const FramePair& pair) {
+  double shorter = std::numeric_limits<double>::infinity();
+  for (const FramePair* p : {&before, &pair}) {
+    if (p->time1 && p->time2) shorter = std::min(shorter, std::abs(*p->time2 - *p->time1));
+  }
+  const double tolerance = std::isfinite(shorter) ? kSameTimeShare * shorter : 0.0;
+  return std::abs(*pair.time1 - *before.time2) <= std::max(tolerance, kSameTimeSeconds);
+}
+
 }  // namespace
 
 std::string WhyNotNext(const std::vector<FramePair>& pairs, const std::vector<int>& positions,
@@ -102,7 +114,7 @@ std::string WhyNotNext(const std::vector<FramePair>& pairs, const std::vector<in
     return "a pair is missing before it";
   }
   if (pair.sequence != before.sequence) return "another sequence";
-  if (before.time2 && pair.time1 && std::abs(*pair.time1 - *before.time2) > kSameTimeSeconds) {
+  if (before.time2 && pair.time1 && !StartsAtEnd(before, pair)) {
     return "starts at " + CsvNumber(*pair.time1) + " s, the pair before ends at " +
            CsvNumber(*before.time2) + " s";
   }

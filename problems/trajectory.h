@@ -14,8 +14,10 @@
 
 namespace rigel {
 
-// Time stamps of one frame in two files differ by no more than this, seconds.
+// Time stamps of one frame in two files differ by no more than this, seconds, or than this share of
+// the shorter of the two pairs: cameras of one frame may have stamps of their own.
 inline constexpr double kSameTimeSeconds = 1e-6;
+inline constexpr double kSameTimeShare = 0.1;
 
 // An estimated |t| counts as a length up to this relative standard deviation.
 inline constexpr double kRoughScaleRatio = 0.5;

@@ -77,7 +77,7 @@ Matrix6d PseudoInformation(const Matrix6d& covariance) {
     if (trace > 0) scale.segment<3>(block).setConstant(1.0 / std::sqrt(trace));
   }
   const Matrix6d scaled = scale.asDiagonal() * Symmetric(covariance) * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(scaled);
   const double smallest = kRankTolerance * eigen.eigenvalues()(5);
   Matrix6d inverse = Matrix6d::Zero();
   for (int k = 0; k < 6; ++k) {
@@ -154,7 +154,7 @@ Matrix6d SqrtInformation(const Matrix6d& information) {
   for (int k = 0; k < 6; ++k) scale(k) = information(k, k) > 0 ? std::sqrt(information(k, k)) : 1.0;
   const Matrix6d scaled = scale.cwiseInverse().asDiagonal() * Symmetric(information) *
                           scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(scaled);
   const Matrix6d root = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
                         eigen.eigenvectors().transpose() * scale.asDiagonal();
   const Eigen::HouseholderQR<Matrix6d> qr(root);

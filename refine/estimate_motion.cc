@@ -189,6 +189,7 @@ MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pai
     estimate.message = std::to_string(estimate.num_inliers) + " of " +
                        std::to_string(matches.size()) +
                        " matches agree on a motion, no more than chance allows";
+    if (estimate.stopped != StopReason::kNone) estimate.message += "; " + stop.Message();
     return estimate;
   }
   const Doubt doubt =

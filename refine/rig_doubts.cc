@@ -127,10 +127,11 @@ std::vector<RigDoubt> FindRigDoubts(const EstimateOptions& options, const FrameP
     const std::string name =
         intra ? "camera " + std::to_string(cameras.first)
               : "cameras " + std::to_string(cameras.first) + "-" + std::to_string(cameras.second);
-    doubts.push_back({RigDoubtKind::kFewFit, cameras.first, cameras.second,
-                      name + ": " + CountOf(fit) +
-                          (intra ? "; are its intrinsics another's, is a quaternion x y z w?"
-                                 : "; are they swapped, is a quaternion x y z w?")});
+    doubts.push_back(
+        {RigDoubtKind::kFewFit, cameras.first, cameras.second,
+         name + ": " + CountOf(fit) +
+             (intra ? "; are its intrinsics another's, or are these matches wrong?"
+                    : "; are they swapped, is a quaternion x y z w, or are these matches wrong?")});
     if (!intra) to_swap.push_back(cameras);
   }
   const RefineSummary& refine = estimate.refine;

@@ -199,7 +199,7 @@ double RelativeScaleSigma(const Matrix6d& information, const Pose& pose) {
   // the trace of the inverse bounds its largest eigenvalue.
   const Vector6d scale = information.diagonal().cwiseSqrt().cwiseInverse();
   const Matrix6d scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  const Eigen::LLT<Matrix6d> llt(scaled);
+  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> llt(scaled);
   if (llt.info() == Eigen::Success) {
     Matrix6d inverse = Matrix6d::Identity();
     llt.matrixL().solveInPlace(inverse);
@@ -233,7 +233,7 @@ std::string WeakestDirection(const Matrix6d& covariance, const Eigen::Vector3d& 
   unit << 1, 1, 1, norm, norm, norm;
   const Matrix6d relative = unit.cwiseInverse().asDiagonal() * covariance *
                             unit.cwiseInverse().asDiagonal().toDenseMatrix();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(relative);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(relative);
   Eigen::Matrix<double, 6, 1> weakest =
       unit.cwiseProduct(eigen.eigenvectors().col(5)) * std::sqrt(eigen.eigenvalues()(5));
   // Either sign is as good: the larger part of t points forward of its own axis.

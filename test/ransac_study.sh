@@ -55,6 +55,13 @@ table() {
   echo "Static: the motion holds nine in ten of the static matches that the true one does."
   echo
   table --ransac=moving --pairs="$pairs"
+  echo
+  echo "## No match that follows any motion"
+  echo
+  echo "Default options, two cameras, half of the matches between them, all points anywhere in the images. Largest: of the pairs of"
+  echo "a row, time of the processor. \`rigel_benchmark --ransac=hostile --pairs=1000\`. A motion for an answer would be a wrong one."
+  echo
+  table --ransac=hostile --pairs=1000
 } >"$work/tables.md"
 mv "$work/tables.md" "$out"
 echo "wrote $out"

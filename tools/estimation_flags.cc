@@ -64,6 +64,9 @@ DEFINE_string(threshold_px, "auto",
 DEFINE_double(confidence, 0.9999,
               "RANSAC stops when a sample of inliers was drawn with this probability");
 DEFINE_int32(max_iterations, 10000, "largest number of RANSAC iterations");
+DEFINE_double(time_limit_ms, 0,
+              "a pair's estimate ends after so long with the best motion found by then; its status "
+              "says so (0: no limit)");
 DEFINE_uint64(seed, 1, "seed of all random numbers; the same seed gives the same result");
 DEFINE_int32(threads, 1, "frame pairs estimated at the same time; the results do not depend on it");
 DEFINE_string(shard, "",
@@ -197,6 +200,10 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
     *error = "--" + *error;
     return false;
   }
+  if (!(FLAGS_time_limit_ms >= 0) || !std::isfinite(FLAGS_time_limit_ms)) {
+    return wrong("time_limit_ms", Text(FLAGS_time_limit_ms), "a number from 0");
+  }
+  if (FLAGS_time_limit_ms > 0) estimate.time_limit = 1e-3 * FLAGS_time_limit_ms;
   if (FLAGS_threads < 1 || FLAGS_threads > 1024) {
     return wrong("threads", std::to_string(FLAGS_threads), "1 to 1024");
   }
@@ -217,6 +224,11 @@ bool CanRefine(const EstimateOptions& estimate, const std::string& solver, std::
     *error = "--refine=" + FLAGS_refine + ": " + solver + " has no prior to hold exact";
   }
   return false;
+}
+
+bool ReadsStdin() {
+  const std::vector<std::string> items = SplitCommas(FLAGS_matches);
+  return std::find(items.begin(), items.end(), "-") != items.end();
 }
 
 InputFiles ListInput() {
@@ -240,6 +252,15 @@ InputFiles ListInput() {
 }
 
 std::vector<std::string> OutputFlags() { return {"csv", "json", "no_times", "shard", "threads"}; }
+
+std::function<void(const RefineProgress&)> ShowRefinement(Progress* progress) {
+  return [progress](const RefineProgress& at) {
+    progress->Note([&] {
+      return "refinement, round " + std::to_string(at.round) + ", iteration " +
+             std::to_string(at.iteration) + ", cost " + Text(at.cost);
+    });
+  };
+}
 
 bool TimesAreGiven() { return !FLAGS_no_times; }
 

@@ -2,6 +2,7 @@
 #ifndef RIGEL_TOOLS_ESTIMATION_FLAGS_H_
 #define RIGEL_TOOLS_ESTIMATION_FLAGS_H_
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "rigel/core/frame_pair.h"
 #include "rigel/problems/comparison.h"
 #include "rigel/problems/shard.h"
+#include "rigel/tools/tool.h"
 
 namespace rigel {
 
@@ -29,11 +31,17 @@ struct InputFiles {
   std::optional<Shard> shard;
 };
 
+// Whether stdin, "-", is among --matches.
+bool ReadsStdin();
+
 // Lists --matches. Says on stderr if there is no file at all.
 InputFiles ListInput();
 
 // The flags that say what is written where, or by how many threads: no options of a result.
 std::vector<std::string> OutputFlags();
+
+// Shows how far a refinement is where it takes long. `progress` must outlive the function.
+std::function<void(const RefineProgress&)> ShowRefinement(Progress* progress);
 
 // Whether times are part of the results: not with --no_times.
 bool TimesAreGiven();

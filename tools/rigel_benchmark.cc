@@ -6,6 +6,7 @@
 
 #include <gflags/gflags.h>
 
+#include "rigel/problems/hostile_benchmark.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/opengv_peers.h"
 #include "rigel/problems/prior_source.h"
@@ -13,6 +14,7 @@
 #include "rigel/problems/refine_benchmark.h"
 #include "rigel/problems/solver_benchmark.h"
 #include "rigel/problems/table.h"
+#include "rigel/refine/solver_choice.h"
 #include "rigel/tools/tool.h"
 
 DEFINE_string(solvers, "", "names of solvers, comma separated; all if empty");
@@ -23,8 +25,9 @@ DEFINE_bool(random_axis, false,
             "turn about a random axis instead of the body's Y (not for planar motion)");
 DEFINE_bool(refine, false,
             "time the refinement instead of the solvers: 600 inliers, from a hypothesis 1 deg off");
-DEFINE_string(ransac, "",
-              "measure RANSAC and refinement instead: speed, outliers, ablation or moving");
+DEFINE_string(
+    ransac, "",
+    "measure RANSAC and refinement instead: speed, outliers, ablation, moving or hostile");
 DEFINE_int32(pairs, 200, "frame pairs of each scene of --ransac");
 DEFINE_string(matches, "",
               "match files and directories, comma separated, instead of the scene of "
@@ -51,7 +54,7 @@ constexpr char kUsage[] =
     "median\n"
     "error of the solution nearest to the truth, which for a first-order solver is its bias.\n"
     "\n"
-    "  rigel_benchmark --ransac=speed|outliers|ablation|moving\n"
+    "  rigel_benchmark --ransac=speed|outliers|ablation|moving|hostile\n"
     "\n"
     "RANSAC and refinement on one thread, in scenes of random motion (planar for planar solvers),\n"
     "1 degree, 0.5 px, exact priors. speed: 626 matches, 30 percent outliers. outliers: 300 "
@@ -63,7 +66,9 @@ constexpr char kUsage[] =
     "of their inliers; success: rotation within three bounds; missed: failed pairs that succeed "
     "if\n"
     "refined from the truth; static: the motion holds nine in ten of the static matches that the\n"
-    "true one does.\n";
+    "true one does. hostile: no match follows any motion; how long a pair takes at most, in time "
+    "of\n"
+    "the processor.\n";
 
 // The first of these flags that was given; empty if none was.
 std::string FirstGiven(const std::vector<std::string>& flags) {
@@ -94,13 +99,52 @@ bool ReadPairs(const PriorSourceOptions& prior, std::vector<FramePair>* pairs) {
   return errors.empty() && !pairs->empty();
 }
 
+bool SolversAreKnown(const std::vector<std::string>& names, bool with_auto, std::string* error) {
+  if (!FLAGS_solvers.empty() && names.empty()) {
+    *error = "--solvers=" + FLAGS_solvers + ": names no solver";
+    return false;
+  }
+  for (const std::string& name : names) {
+    if (FindSolver(name) != nullptr || (with_auto && name == kAutoSolver)) continue;
+    *error = "--solvers: there is no solver '" + name + "'; expected some of " +
+             (with_auto ? SolverNamesWithAuto() : SolverNames());
+    return false;
+  }
+  return true;
+}
+
+int RunHostile() {
+  HostileBenchmarkOptions options;
+  options.solvers = SplitCommas(FLAGS_solvers);
+  options.pairs = FLAGS_pairs;
+  options.seed = FLAGS_seed;
+  const std::string flag = FirstGiven({"matches", "prior"});
+  if (!flag.empty()) return UsageError("--" + flag + ": --ransac=hostile makes pairs of its own");
+  if (FLAGS_pairs < 1) return UsageError("--pairs: expected at least 1");
+  std::string error;
+  if (!SolversAreKnown(options.solvers, /*with_auto=*/true, &error)) return UsageError(error);
+  std::vector<HostileBenchmarkRow> rows;
+  {
+    Progress progress("rigel_benchmark", CountHostileRows(options));
+    rows = BenchmarkHostile(options, [&] { progress.Step(); });
+  }
+  bool ok = true;
+  if (FLAGS_json != "-") {
+    std::cout << HostileBenchmarkTable(rows);
+    ok = FlushStdout();
+  }
+  ok = WriteOutput(FLAGS_json, HostileBenchmarkJson(rows, options)) && ok;
+  return ok ? kExitDone : kExitFailed;
+}
+
 int RunRansac() {
+  if (FLAGS_ransac == "hostile") return RunHostile();
   RansacBenchmarkOptions options;
   options.pairs = FLAGS_pairs;
   options.seed = FLAGS_seed;
   if (!ParseRansacExperiment(FLAGS_ransac, &options.experiment)) {
     return UsageError("--ransac=" + FLAGS_ransac +
-                      ": expected speed, outliers, ablation or moving");
+                      ": expected speed, outliers, ablation, moving or hostile");
   }
   const bool files = !FirstGiven({"matches"}).empty();
   if (files && options.experiment != RansacExperiment::kSpeed) {
@@ -118,21 +162,14 @@ int RunRansac() {
   }
   if (FLAGS_pairs < 1) return UsageError("--pairs: expected at least 1");
   options.solvers = SplitCommas(FLAGS_solvers);
-  if (!FLAGS_solvers.empty() && options.solvers.empty()) {
-    return UsageError("--solvers=" + FLAGS_solvers + ": names no solver");
-  }
-  for (const std::string& name : options.solvers) {
-    if (FindSolver(name) != nullptr) continue;
-    return UsageError("--solvers: there is no solver '" + name + "'; expected some of " +
-                      SolverNames());
-  }
+  std::string error;
+  if (!SolversAreKnown(options.solvers, /*with_auto=*/false, &error)) return UsageError(error);
   bool ok = true;
   std::vector<RansacBenchmarkRow> rows;
   if (files) {
     options.experiment = RansacExperiment::kFiles;
     std::vector<FramePair> pairs;
     std::vector<std::string> ignored;  // told when they are read
-    std::string error;
     if (!OutputsAreNoInputs({{"json", FLAGS_json}}, ListMatchFiles(FLAGS_matches, &ignored),
                             &error)) {
       return UsageError(error);

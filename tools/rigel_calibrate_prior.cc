@@ -310,10 +310,10 @@ int Run() {
     return UsageError("--shard: a calibration is of all files");
   }
   const bool writes = FLAGS_in_place || !FLAGS_output.empty();
-  const std::vector<std::string> items = SplitCommas(FLAGS_matches);
-  if (writes && std::count(items.begin(), items.end(), "-") > 0) {
-    return UsageError("--matches=" + FLAGS_matches + ": stdin has no file whose lines could be " +
-                      "written; without --in_place and --output it is read");
+  if (writes && ReadsStdin()) {
+    return UsageError(
+        "--matches: stdin has no file whose lines could be written; without --in_place and "
+        "--output it is read");
   }
 
   const InputFiles input = ListInput();

@@ -240,7 +240,9 @@ int Run() {
   FileComparison comparison;
   {
     Progress progress("rigel_compare", static_cast<int>(input.paths.size()));
+    options.estimate.refine.progress = ShowRefinement(&progress);
     comparison = CompareFiles(options, input.paths, input.first, [&] { progress.Step(); });
+    options.estimate.refine.progress = nullptr;
   }
   for (const std::string& message : comparison.errors) std::cerr << PrintablePath(message) << "\n";
   std::vector<std::string> without_truth;

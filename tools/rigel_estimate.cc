@@ -236,7 +236,9 @@ int Run() {
   std::vector<BatchItem<Estimated>> items;
   {
     Progress progress(FLAGS_solver, static_cast<int>(input.paths.size()));
+    estimate.refine.progress = ShowRefinement(&progress);
     items = RunBatch(options, input.paths, input.first, work, [&] { progress.Step(); });
+    estimate.refine.progress = nullptr;
   }
   EstimateReport report;
   std::vector<int> positions;

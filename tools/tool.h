@@ -1,11 +1,13 @@
 // What the rigel_* programs share: flags, exit codes, output.
 //
-// Exit codes: 0 done; 1 a file could not be read or written, nothing to read, no pair with a motion,
-// or no truth where it is needed; 2 a wrong flag or value; 3 a bound that a flag set was missed.
-// Results go to stdout, talk to stderr.
+// Exit codes: 0 done; 1 a file could not be read or written, nothing to read, no pair with a
+// motion, or no truth where it is needed; 2 a wrong flag or value; 3 a bound that a flag set was
+// missed. Results go to stdout, talk to stderr.
 #ifndef RIGEL_TOOLS_TOOL_H_
 #define RIGEL_TOOLS_TOOL_H_
 
+#include <chrono>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -64,8 +66,8 @@ bool OutputsDiffer(const std::vector<OutputFlag>& outputs, std::string* error);
 bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
                         const std::vector<std::string>& inputs, std::string* error);
 
-// Reads a text file (rigel/problems/input_file.h) of at most 1 GiB without its byte order mark. False
-// with a message on stderr if that fails.
+// Reads a text file (rigel/problems/input_file.h) of at most 1 GiB without its byte order mark.
+// False with a message on stderr if that fails.
 bool ReadInput(const std::string& path, std::string* text);
 
 // Splits at commas; empty parts are dropped.
@@ -77,12 +79,18 @@ class Progress {
   Progress(std::string what, int total);
   ~Progress();
   void Step();
+  // What is going on besides, a few times a second at most: "what: k of n; text()".
+  void Note(const std::function<std::string()>& text);
 
  private:
+  void Show(const std::string& note);
+
   std::string what_;
   int total_;
   int done_ = 0;
   bool terminal_;
+  bool shown_ = false;
+  std::chrono::steady_clock::time_point noted_ = std::chrono::steady_clock::now();
   std::mutex mutex_;
 };
 

@@ -249,7 +249,7 @@ Stamps StampsOf(const Images& images) {
 }
 
 std::string Milliseconds(int64_t nanoseconds) {
-  return CsvNumber(static_cast<double>(nanoseconds) * 1e-6) + " ms";
+  return CsvNumber(static_cast<double>(nanoseconds) / 1e6) + " ms";
 }
 
 // The frames of the images of both cameras. False, with what is wrong, if there are none.

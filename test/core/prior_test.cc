@@ -41,7 +41,8 @@ TEST(Prior, DirectionsAreUnitVectorsAndSigmasPositive) {
       {&MotionPrior::gravity1, "gravity1"},
       {&MotionPrior::gravity2, "gravity2"},
       {&MotionPrior::axis, "axis"},
-      {&MotionPrior::normal, "normal"}};
+      {&MotionPrior::normal, "normal"},
+      {&MotionPrior::forward, "forward"}};
   for (const auto& [member, name] : directions) {
     for (const double bad : {0.0, 0.99, 2.0, nan, inf}) {
       MotionPrior prior;

@@ -505,7 +505,7 @@ TEST(RansacOptions, SaysWhatIsWrong) {
     void (*damage)(RansacOptions*);
   };
   const Case cases[] = {
-      {"threshold_px", [](RansacOptions* o) { o->threshold_px = 0.0; }},
+      {"threshold_px", [](RansacOptions* o) { o->threshold_px = 1e-13; }},
       {"threshold_px", [](RansacOptions* o) { o->threshold_px = -1.0; }},
       {"threshold_px", [](RansacOptions* o) { o->threshold_px = kNan; }},
       {"threshold_px", [](RansacOptions* o) { o->threshold_px = kInf; }},

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "rigel/core/random.h"
+#include "rigel/core/rig_centre.h"
 #include "rigel/problems/synthetic.h"
 #include "rigel/refine/between_factor.h"
 #include "rigel/test/problems/g2o_reader.h"
@@ -191,6 +192,41 @@ TEST(G2oFile, EdgesWithoutScaleHaveAStatedOrUnitLength) {
   EXPECT_THAT(drive.notes,
               ElementsAre("|t| is not determined in 3 of 5 edges and has no information: 1 have "
                           "the distance of their file, 2 are of 1 m"));
+}
+
+// A red light.
+TEST(G2oFile, AStandingPairHasAnEdge) {
+  for (const bool known : {true, false}) {
+    Drive drive = RandomDrive(4);
+    MotionEstimate& e = drive.estimates[1];
+    const Eigen::Vector3d point(1.5, 0.0, 0.3);
+    e.pose = MotionOfBody({ExpSO3({1e-4, 2e-4, 0}), {0, 0, 1e-6}}, point);
+    e.refine.fitted_point = point;
+    e.refine.translation_observable = e.refine.scale_observable = e.refine.scale_free = false;
+    e.refine.parallax_px = 0.5;
+    e.refine.parallax_limit_px = 1.0;
+    e.refine.relative_scale_sigma = known ? 1e4 : std::numeric_limits<double>::infinity();
+    const G2oGraph graph = drive.Graph();
+    ASSERT_THAT(graph.vertices, SizeIs(5));
+    ASSERT_THAT(graph.edges, SizeIs(4));
+    EXPECT_THAT(drive.notes,
+                ElementsAre(HasSubstr("stands still in 1 of 4 edges, which have no translation")));
+    const Pose motion = graph.edges[1].measurement.Inverse();
+    EXPECT_LT(MotionOfPoint(motion, point).t.norm(), 1e-15);
+    EXPECT_LT((motion.R - e.pose.R).norm(), 1e-15);
+    const Matrix6d J = G2oJacobian(motion);
+    const Matrix6d information = J.transpose() * graph.edges[1].information * J;
+    Matrix6d expected = PseudoInformation(*e.refine.covariance);
+    if (!known) {
+      // Of the rotation that of its marginal, of the centre a centimetre.
+      Matrix6d covariance = Matrix6d::Zero();
+      covariance.topLeftCorner<3, 3>() = e.refine.covariance->topLeftCorner<3, 3>();
+      covariance.diagonal().tail<3>().setConstant(1e-4);
+      const Matrix6d to_body = BodyFromPointJacobian(motion.R, point);
+      expected = PseudoInformation(to_body * covariance * to_body.transpose());
+    }
+    EXPECT_LT((information - expected).norm(), 1e-6 * expected.norm()) << known;
+  }
 }
 
 TEST(G2oFile, NothingToChainIsAnEmptyGraph) {

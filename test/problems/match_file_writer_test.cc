@@ -24,7 +24,7 @@ TEST(WriteMatchFile, ByItsNameCompressed) {
   std::string error;
   ASSERT_TRUE(WriteMatchFile(dir / "a.matches.gz", pair, &error)) << error;
   ASSERT_TRUE(ReadMatchFile(dir / "a.matches.gz", &read, &error)) << error;
-  EXPECT_EQ(FormatMatches(read), FormatMatches(pair));
+  ExpectSame(read, pair);
   std::ifstream file(dir / "a.matches.gz", std::ios::binary);
   EXPECT_EQ(file.get(), 0x1f);
   EXPECT_EQ(file.get(), 0x8b);
@@ -130,7 +130,7 @@ TEST(MatchFile, FailedWritesLeaveTheOldFile) {
   EXPECT_EQ(error.find("temporary"), std::string::npos) << error;
   fs::create_directory(dir / "folder");
   EXPECT_FALSE(WriteMatchFile(dir / "folder", pair, &error));
-  EXPECT_NE(error.find("Is a directory"), std::string::npos) << error;
+  EXPECT_NE(error.find("is a directory"), std::string::npos) << error;
   fs::remove(dir / "folder");
 
   // A device that takes 300 bytes stands for a full disk: a short text fails when the buffer is

@@ -97,6 +97,23 @@ TEST(Trajectory, GapsEndItAndAreTold) {
                           "8: a pair is missing before it: the trajectory ended before it"));
 }
 
+// Each file may have the stamp of another of the cameras that saw the frame.
+TEST(Trajectory, StampsOfOneFrameMayDifferByATenthOfAnInterval) {
+  Drive drive = RandomDrive(2);
+  drive.pairs[0].time1 = 100.0;
+  drive.pairs[0].time2 = 100.05;
+  drive.pairs[1].time2 = 100.1;
+  for (const double shift : {-0.0045, 1.2e-5, 0.004}) {
+    drive.pairs[1].time1 = 100.05 + shift;
+    EXPECT_THAT(drive.Chain(), SizeIs(1)) << shift;
+    EXPECT_THAT(drive.notes, IsEmpty());
+  }
+  for (const double shift : {-0.006, 0.006}) {
+    drive.pairs[1].time1 = 100.05 + shift;
+    EXPECT_THAT(drive.Chain(), SizeIs(2)) << shift;
+  }
+}
+
 TEST(Trajectory, StandingStillIsNoGapButAnUnknownMotionIs) {
   Drive drive = RandomDrive(4);
   drive.estimates[1].refine.translation_observable = false;
@@ -173,7 +190,8 @@ TEST(TrajectoryFile, LinesAreAsTheToolsReadThem) {
   const BodyAxes z_up = {{0, 0, -1}, {1, 0, 0}};
   EXPECT_THAT(FormatTumTrajectory({Pose()}, {}, z_up),
               testing::StartsWith("# body: down -z, forward +x\n# no times"));
-  EXPECT_THAT(FormatTumTrajectory({Pose(), pose}, {}, BodyAxes()), HasSubstr("\n1 1 -2 0.1 0 0.247"));
+  EXPECT_THAT(FormatTumTrajectory({Pose(), pose}, {}, BodyAxes()),
+              HasSubstr("\n1 1 -2 0.1 0 0.247"));
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ Matrix6d RandomCovariance(double sigma, Random* random) {
 }
 
 double SmallestEigenvalue(const Matrix6d& m) {
-  return Eigen::SelfAdjointEigenSolver<Matrix6d>(m).eigenvalues()(0);
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(m).eigenvalues()(0);
 }
 
 TEST(BetweenFactor, JacobiansMatchNumericDifferentiation) {
@@ -325,7 +325,7 @@ TEST(BetweenFactor, OfRefinedMotions) {
       ASSERT_TRUE(summary.IsSolutionUsable());
       ASSERT_TRUE(summary.translation_observable);
       const BetweenFactor edge = G2oEdge(pose, summary);
-      const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(edge.information);
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(edge.information);
       const double largest = eigen.eigenvalues()(5);
       EXPECT_EQ(eigen.eigenvalues()(0) > 1e-13 * largest, summary.scale_free) << index;
       EXPECT_GT(eigen.eigenvalues()(0), -1e-13 * largest);

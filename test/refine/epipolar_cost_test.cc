@@ -391,7 +391,8 @@ TEST(EpipolarCost, IsZeroAtTheEpipoles) {
   }
 }
 
-TEST(EpipolarCost, IsZeroWhereEVanishes) {
+// There is no residual, and a problem that starts there must not end as converged.
+TEST(EpipolarCost, FailsToEvaluateWhereEVanishes) {
   Random random(8);
   for (int i = 0; i < 20; ++i) {
     const Rig rig = MixedRig(&random);
@@ -402,9 +403,52 @@ TEST(EpipolarCost, IsZeroWhereEVanishes) {
         pose.R = ExpSO3(random.Uniform(0.0, kPi) * random.UnitVector3());
         pose.t = rig.cameras[m.camera2].s - pose.R * rig.cameras[m.camera1].s;
       }
-      ExpectZero(rig, m, pose, nullptr);
-      ExpectZero(rig, m, pose, &random);
+      for (Random* world : {static_cast<Random*>(nullptr), &random}) {
+        for (const Form& form : kForms) {
+          for (const QuaternionOrder order : kOrders) {
+            const auto cost = MakeCost(form, rig, m, 0.5, order);
+            const Blocks blocks = MakeBlocks(form, order, pose, rig, m, world);
+            double residual = 0.0;
+            EXPECT_FALSE(cost->Evaluate(blocks.Pointers().data(), &residual, nullptr))
+                << Name(form, m, order);
+          }
+        }
+      }
     }
+  }
+}
+
+TEST(EpipolarCost, TwoEqualPosesAreNoUsableStart) {
+  SceneOptions scene;
+  scene.num_matches = 60;
+  FramePair pair;
+  std::string error;
+  for (const double inter_share : {0.0, 0.5}) {
+    scene.inter_share = inter_share;
+    ASSERT_TRUE(MakeScenePair(scene, 3, &pair, &error)) << error;
+    const auto solve = [&](double apart, double* end) {
+      double q[2][4] = {{1, 0, 0, 0}, {1, 0, 0, 0}}, p[2][3] = {{0, 0, 0}, {0, 0, apart}};
+      ceres::Problem problem;
+      for (double* pose : q) problem.AddParameterBlock(pose, 4, new ceres::QuaternionManifold);
+      for (const Match& m : pair.matches) {
+        problem.AddResidualBlock(
+            MakeAbsoluteEpipolarCost(pair.rig, m, 0.5, QuaternionOrder::kCeres),
+            new ceres::CauchyLoss(2.0), q[0], p[0], q[1], p[1]);
+      }
+      problem.SetParameterBlockConstant(q[0]);
+      problem.SetParameterBlockConstant(p[0]);
+      ceres::Solver::Options options;
+      options.logging_type = ceres::SILENT;
+      ceres::Solver::Summary summary;
+      ceres::Solve(options, &problem, &summary);
+      *end = summary.final_cost;
+      return summary.IsSolutionUsable();
+    };
+    double end = 0.0;
+    EXPECT_FALSE(solve(0.0, &end)) << inter_share;
+    // A start that is roughly right moves.
+    EXPECT_TRUE(solve(-0.8, &end)) << inter_share;
+    EXPECT_LT(end, 1.5 * scene.num_matches) << inter_share;
   }
 }
 

@@ -144,7 +144,7 @@ TEST(EstimateMotion, RefusesWrongOptionsWithAMessage) {
   expect_invalid(With("5pt"), pair, "4pt-axis");  // names those that there are
   expect_invalid(With(""), pair, "solver");
   EstimateOptions options;
-  options.ransac.threshold_px = 0;
+  options.ransac.threshold_px = -1;
   expect_invalid(options, pair, "threshold_px");
   options = EstimateOptions();
   options.ransac.confidence = 1.0;

@@ -335,8 +335,10 @@ TEST(Refine, WrongInputIsAFailureWithAMessageAndThePoseStays) {
   };
   const Pose truth = *pair.truth;
   for (const double bad : {0.0, -1.0, nan, inf}) {
-    expect_failure(with([&](RefineOptions* o) { o->threshold_px = bad; }), pair, truth,
-                   "threshold_px");
+    if (bad != kAutoThresholdPx) {
+      expect_failure(with([&](RefineOptions* o) { o->threshold_px = bad; }), pair, truth,
+                     "threshold_px");
+    }
     expect_failure(with([&](RefineOptions* o) { o->loss_scale_sigmas = bad; }), pair, truth,
                    "loss_scale_sigmas");
     expect_failure(with([&](RefineOptions* o) { o->noise_px = bad; }), pair, truth, "noise_px");
@@ -525,10 +527,11 @@ TEST(Refine, TheSummaryFitsTheMotionInTheOrderOfTheInput) {
       const double r = std::abs(SampsonError(pose, pair.rig, pair.matches[k]));
       // Those that fit, but for what would lie behind a camera or is likelier an outlier.
       const RayPair rays = MakeRayPair(pair.rig, pair.matches[k]);
-      const double decided = 2.0 * options.threshold_px / 400.0;
+      const double threshold_px = DefaultThresholdPx(pair.rig);
+      const double decided = 2.0 * threshold_px / 400.0;
       const Cheirality side = TestCheirality(pose, rays, decided);
       const bool behind = side == Cheirality::kBehind || side == Cheirality::kMixed;
-      const bool fits = r < options.threshold_px && !behind;
+      const bool fits = r < threshold_px && !behind;
       EXPECT_TRUE(fits || !summary.inliers[k]) << k;
       fitting += fits;
       if (summary.inliers[k]) errors.push_back(r);

@@ -105,7 +105,7 @@ TEST(Uncertainty, CovarianceOnTheSphereHasRankFiveAndNothingAlongT) {
   const Eigen::Vector3d along = covariance.block<3, 3>(3, 3) * pair.truth->t;
   EXPECT_LT(along.norm(), 1e-12);
   const Eigen::VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Matrix6d>(covariance).eigenvalues();
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(covariance).eigenvalues();
   EXPECT_LT(eigenvalues(0), 1e-12 * eigenvalues(5));
   EXPECT_GT(eigenvalues(1), 1e-9 * eigenvalues(5));
   // It inverts the information of those directions.

@@ -142,6 +142,18 @@ TEST(BenchmarkTest, RansacReportIsDeterministicButForTimes) {
   EXPECT_NE(report["results"], WithoutTimes(Benchmark(args + Args{"--seed=2"}))["results"]);
 }
 
+TEST(BenchmarkTest, HostilePairsHaveARowASizeAndNoMotion) {
+  const Json report =
+      Benchmark({"--ransac=hostile", "--pairs=2", "--solvers=3pt-approx", "--seed=3"});
+  EXPECT_EQ(report["experiment"], "hostile");
+  ASSERT_EQ(report["results"].size(), 3u);
+  for (const Json& row : report["results"]) {
+    EXPECT_EQ(row["pairs"], row["matches"] == 200000 ? 1 : 2);
+    EXPECT_EQ(row["motions"], 0);
+    EXPECT_GE(row["cpu_ms"]["max"], row["cpu_ms"]["median"]);
+  }
+}
+
 TEST(BenchmarkTest, RansacRunsOnMatchFiles) {
   const std::string directory = testing::TempDir() + "/rigel_benchmark_ransac";
   ASSERT_EXIT_CODE(RunTool("simulate", {"--output=" + directory, "--pairs=2", "--motion=planar"}),
@@ -172,6 +184,8 @@ TEST(BenchmarkTest, RansacRefusesFlagsThatHaveNoEffect) {
       {{"--ransac=speed", "--matches=x", "--prior=none"}, "--prior=none"},
       {{"--ransac=speed", "--matches=x", "--pairs=5"}, "--pairs"},
       {{"--ransac=outliers", "--matches=x"}, "--matches"},
+      {{"--ransac=hostile", "--matches=x"}, "--matches"},
+      {{"--ransac=hostile", "--solvers=7pt"}, "'7pt'"},
       {{"--matches=x"}, "--matches"},
       {{"--pairs=5"}, "--pairs"},
       {{"--prior=body"}, "--prior"},

@@ -66,7 +66,8 @@ TEST_F(CompareTest, JsonHasTheStructureOfTheFormat) {
   const std::string matches =
       Simulate("in", {"--pairs=6", "--inter_share=0.5", "--outlier_share=0.2", "--motion=planar"});
   const Json report = Compare({"--matches=" + matches});
-  EXPECT_THAT(Keys(report), UnorderedElementsAre("format", "pairs", "options", "results"));
+  EXPECT_THAT(Keys(report),
+              UnorderedElementsAre("format", "rigel_version", "pairs", "options", "results"));
   EXPECT_EQ(report["format"], "rigel-report 1");
   EXPECT_EQ(report["pairs"], 6);
   EXPECT_TRUE(report["options"].is_object());

@@ -54,7 +54,7 @@ TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
   ASSERT_EXIT_CODE(run, 0);
   EXPECT_THAT(run.err, IsEmpty());
   const Json report = ParseReport(run.out);
-  EXPECT_THAT(Keys(report), UnorderedElementsAre("format", "options", "pairs"));
+  EXPECT_THAT(Keys(report), UnorderedElementsAre("format", "rigel_version", "options", "pairs"));
   EXPECT_EQ(report["format"], "rigel-estimate 1");
   EXPECT_EQ(report["options"]["solver"], "4pt-axis");
   EXPECT_EQ(report["options"]["confidence"], "0.9999");
@@ -65,7 +65,7 @@ TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
                                 "time_ms", "raw", "refined", "median_residual_px", "noise_px",
                                 "rotation_observable", "translation_observable", "scale_observable",
                                 "rotation_sd_deg", "translation_dir_sd_deg", "covariance",
-                                "relative_scale_sd", "weakest_direction"));
+                                "camera_pairs", "relative_scale_sd", "weakest_direction"));
     EXPECT_EQ(pair["status"], "ok");
     EXPECT_EQ(pair["matches"], 200);
     EXPECT_GE(pair["inliers"], 150);
@@ -85,6 +85,22 @@ TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
     EXPECT_LT(pair["translation_dir_sd_deg"], 2.0);
     EXPECT_TRUE(pair["scale_observable"].get<bool>());
   }
+}
+
+// Nothing is found in a nanosecond; an hour changes nothing.
+TEST_F(EstimateTest, ATimeLimitIsSaidWhereItEndedTheSearch) {
+  const std::string matches = Simulate("in", {"--pairs=1", "--num_matches=2000"});
+  const Outcome run =
+      RunTool("estimate", {"--matches=" + matches, "--time_limit_ms=1e-6", "--json=-"});
+  const Json pair = ParseReport(run.out)["pairs"][0];
+  EXPECT_EQ(pair["stopped"], "time limit");
+  EXPECT_THAT(pair["message"].get<std::string>(), HasSubstr("time limit of 1e-06 ms"));
+  EXPECT_THAT(run.err, HasSubstr("time limit"));
+
+  const Args args = {"--matches=" + matches, "--no_times"};
+  Json plain = OnlyPair(args);
+  EXPECT_EQ(OnlyPair(args + Args{"--time_limit_ms=3600000"}), plain);
+  EXPECT_FALSE(plain.contains("stopped"));
 }
 
 TEST_F(EstimateTest, WithoutRefinementOnlyTheRawMotion) {
@@ -168,6 +184,39 @@ TEST_F(EstimateTest, ScaleOfIntraMatchesIsNotReportedAsIfItWereKnown) {
   const Outcome run = RunTool("estimate", {"--matches=" + matches});
   EXPECT_THAT(run.out, HasSubstr("not observable"));
   EXPECT_THAT(run.out, HasSubstr("Rt-"));
+}
+
+TEST_F(EstimateTest, SwappedCamerasAreToldOnceAndCountedInTheJson) {
+  const std::string matches = Simulate(
+      "in", {"--pairs=2", "--num_matches=200", "--inter_share=0.5", "--outlier_share=0.1"});
+  for (const char* name : {"/000000.matches", "/000001.matches"}) {
+    std::vector<std::string> lines = Lines(ReadText(matches + name));
+    std::string text;
+    for (std::string& line : lines) {
+      if (line.rfind("camera 0 ", 0) == 0) {
+        line[7] = '1';
+      } else if (line.rfind("camera 1 ", 0) == 0) {
+        line[7] = '0';
+      }
+      text += line + "\n";
+    }
+    WriteText(matches + name, text);
+  }
+  const Outcome run = RunTool("estimate", {"--matches=" + matches, "--json=-"});
+  EXPECT_EXIT_CODE(run, 0);
+  EXPECT_THAT(run.err, HasSubstr("with cameras 0 and 1 swapped 1"));
+  EXPECT_THAT(run.err, HasSubstr("(and so in 1 more)"));
+  const Json report = ParseReport(run.out);
+  for (const Json& pair : report["pairs"]) {
+    int rows = 0, inliers = 0;
+    for (const Json& cameras : pair["camera_pairs"]) {
+      rows += cameras["rows"].get<int>();
+      inliers += cameras["inliers"].get<int>();
+    }
+    EXPECT_EQ(rows, 200);
+    EXPECT_EQ(inliers, pair["inliers"].get<int>());
+    ASSERT_FALSE(pair["rig_doubts"].empty());
+  }
 }
 
 TEST_F(EstimateTest, CsvHasOneRowAPairOfTheSameColumns) {
@@ -281,8 +330,8 @@ TEST_F(EstimateTest, ZUpBodyGivesItsTurnWhateverThePrior) {
                                                 "--inter_share=0.3", "--outlier_share=0.2"});
   MakeZUpWithoutPriors(directory);
   for (const Args& flags :
-       {Args{"--solver=auto"}, Args{"--solver=auto", "--prior=body"},
-        Args{"--solver=3pt", "--prior=body"}, Args{"--solver=3pt", "--prior=body", "--down=-z"},
+       {Args{}, Args{"--solver=auto", "--prior=body"}, Args{"--solver=3pt", "--prior=body"},
+        Args{"--solver=3pt", "--prior=body", "--down=-z"},
         Args{"--solver=4pt", "--prior=body", "--down=0,0,-3"}}) {
     const bool suggested = flags.size() == 2 && flags[1] == "--prior=body";
     const Outcome run = RunTool("estimate", Args{"--matches=" + directory, "--json=-"} + flags);

@@ -36,7 +36,7 @@ TEST_F(InputTest, StdinAndCompressedFilesAreReadAsFilesAre) {
   for (const std::string& file : {in_, Path("a.matches.gz")}) {
     for (const char* threads : {"--threads=1", "--threads=4"}) {
       const Outcome run =
-          RunTool("estimate", Args{"--matches=-", threads} + solver, Stdout::kCaptured, file);
+          RunTool("estimate", Args{"--matches=-", threads} + solver, Stdout::kCaptured, {}, file);
       EXPECT_EXIT_CODE(run, 0);
       EXPECT_EQ(motion(run), motion(plain));
       EXPECT_THAT(run.out, HasSubstr("\nstdin,ok,"));
@@ -46,7 +46,7 @@ TEST_F(InputTest, StdinAndCompressedFilesAreReadAsFilesAre) {
   int pairs = 0;
   for (const char* shard : {"--shard=0/2", "--shard=1/2"}) {
     const Outcome run = RunTool("compare", {"--matches=-", "--solvers=4pt-axis", shard, "--json=-"},
-                                Stdout::kCaptured, in_);
+                                Stdout::kCaptured, {}, in_);
     pairs += ParseReport(run.out).at("pairs").get<int>();
   }
   EXPECT_EQ(pairs, 1);
@@ -91,7 +91,7 @@ TEST_F(InputTest, NamesAreInTheOrderOfTheirNumbersAndThatIsSaidOnce) {
 }
 
 TEST_F(InputTest, CalibratedCompressedFilesStayCompressed) {
-  const std::string clip = Simulate("clip", {"--pairs=6", "--motion=planar", "--rotation_deg=5"});
+  const std::string clip = Simulate("clip", {"--pairs=12", "--motion=planar", "--rotation_deg=5"});
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(clip)) names.push_back(entry.path().string());
   for (const std::string& name : names) {

@@ -33,9 +33,9 @@ struct Limits {
   bool as_nobody = false;
 };
 
-// Runs "rigel_NAME" and waits for it. stdin is empty.
+// Runs "rigel_NAME" and waits for it. stdin is the file `in`.
 Outcome RunTool(const std::string& name, const Args& args, Stdout to = Stdout::kCaptured,
-                const Limits& limits = {});
+                const Limits& limits = {}, const std::string& in = "/dev/null");
 
 std::string ReadText(const std::string& path);
 void WriteText(const std::string& path, const std::string& text);

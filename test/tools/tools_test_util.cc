@@ -57,7 +57,8 @@ void ExpectFinite(const Json& json, const std::string& where) {
 
 }  // namespace
 
-Outcome RunTool(const std::string& name, const Args& args, Stdout to, const Limits& limits) {
+Outcome RunTool(const std::string& name, const Args& args, Stdout to, const Limits& limits,
+                const std::string& in) {
   Outcome run;
   const std::string program = std::string(RIGEL_PROGRAMS) + "/rigel_" + name;
   run.command = "rigel_" + name;
@@ -81,7 +82,7 @@ Outcome RunTool(const std::string& name, const Args& args, Stdout to, const Limi
   const pid_t child = fork();
   if (child == 0) {
     alarm(kTimeoutSeconds);  // outlives exec
-    Redirect("/dev/null", O_RDONLY, STDIN_FILENO);
+    Redirect(in.c_str(), O_RDONLY, STDIN_FILENO);
     Redirect(err.c_str(), kWrite, STDERR_FILENO);
     switch (to) {
       case Stdout::kCaptured:
