@@ -94,7 +94,7 @@ struct RefineOptions {
   std::optional<double> noise_px;
   // >= 1; so many motions were tried before the start was found, which the number of matches that
   // agree must make up for (RefineSummary::exceeds_chance).
-  double num_tries = 1e7;
+  double num_tries = 1e4;
 
   // Seconds from the call on, >= 0, and a flag that any thread may set: either ends the refinement
   // with Termination::kStopped after the iteration in progress.

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Measures which solver wins where and writes docs/solver_choice.md (a minute on two cores):
+# Measures which solver wins where and writes docs/solver_choice.md (some minutes on two cores; with the
+# real set where RIGEL_REAL_DATA names the folder of real data):
 # test/solver_choice_study.sh [BUILD_DIR [PAIRS]]
 set -euo pipefail
 
@@ -16,13 +17,18 @@ solvers=3pt,4pt,4pt-axis,5pt+1,auto
   echo
   echo "# Which solver, and what \`auto\` does"
   echo
-  echo "\`--solver=auto\` takes the most constrained solver that the priors allow: \`3pt\` (planar motion), \`4pt\` (known"
-  echo "vertical), \`4pt-axis\` (known axis), in the end \`5pt+1\`, which needs none. While fewer than half of the matches agree"
-  echo "with the motion, or it has turned away from the prior by more than 2 degrees, the next one joins, and the best score"
-  echo "wins. The refinement does not hold the prior, so that what a prior is worth is time: with many outliers the smaller"
-  echo "sample needs fewer iterations, and with a wrong prior the less constrained solver still finds the motion. What is"
-  echo "weighed in the refinement (\`--use_prior_in_refine\`) must be right. Where more than half of the matches are outliers, all"
-  echo "solvers of the list run."
+  echo "\`--solver=auto\` begins with the most constrained solver that the priors allow: \`3pt\` (planar motion), \`4pt\` (known"
+  echo "vertical), \`4pt-axis\` (known axis). Where there is cause for doubt in what it finds in 100 iterations, those that need no"
+  echo "prior are asked for 100: \`5pt+1\`, and where most of the matches are of camera pairs that have no five, \`6pt-ventura\` and"
+  echo "\`17pt-li\`. The other constrained ones come after them. The first whose motion gives no cause for doubt goes on alone; if"
+  echo "there is none, the best constrained one and those without a prior take turns until the one that leads has drawn a sample"
+  echo "of inliers with the confidence asked for. All share one budget, \`--max_iterations\`. Causes for doubt: fewer than half of"
+  echo "the matches agree with the motion, 10 percent more agree at twice the threshold, or it turned away from the prior by more"
+  echo "than 2 degrees. What was tried and why is in the JSON of rigel_estimate, \`auto\`."
+  echo
+  echo "The refinement does not hold the prior, so that what a prior is worth is time: with many outliers the smaller sample"
+  echo "needs fewer iterations, and a wrong prior costs what the first 100 iterations take. What is weighed in the refinement"
+  echo "(\`--use_prior_in_refine\`) must be right."
   echo
   echo "$pairs pairs a row, 300 intra-camera matches, 50 percent outliers, 0.5 px; \`planar\` is motion in the plane, \`random\`"
   echo "has vertical motion, which the prior of \`3pt\` denies; noise is the error of the prior (\`--prior=body"
@@ -48,6 +54,32 @@ solvers=3pt,4pt,4pt-axis,5pt+1,auto
     done
     echo "$motion done" >&2
   done
+  echo
+  echo "## What a wrong prior costs"
+  echo
+  echo "\`auto\` with \`--prior=body\` against \`5pt+1\`, which needs no prior: 400 matches, 30 percent outliers, 0.5 px, two forward"
+  echo "cameras (\`stereo\`) or a ring of 4 or 8, turned about the body's down, where the prior is right, or about a random axis,"
+  echo "where it is wrong. p50 / p90 over the pairs, each its least of 9 runs in turns (\`test/solver_choice_times.py\`): time of"
+  echo "the pair over that of \`5pt+1\`, times in ms, refined rotation errors in degrees.${RIGEL_REAL_DATA:+ euroc_loop is a real drone that turns by 26 degrees.}"
+  echo
+  echo "| rig, turn | pairs | time over 5pt+1's | auto, ms | 5pt+1, ms | auto, deg | 5pt+1, deg |"
+  echo "| --- | --- | --- | --- | --- | --- | --- |"
+  sets=()
+  for rig in stereo "ring of 4" "ring of 8"; do
+    flags=()
+    [[ $rig == stereo ]] || flags=(--ring --num_cameras="${rig##* }")
+    for axis in y random; do
+      for turn in 1 10 30; do
+        dir=$work/${rig// /_}-$axis-$turn
+        "$bin/rigel_simulate" --output="$dir" --pairs="$pairs" "${flags[@]}" --num_matches=400 --outlier_share=0.3 \
+          --rotation_deg=$turn --rotation_axis=$axis >/dev/null 2>&1
+        name="$rig, $turn deg about $([[ $axis == y ]] && echo down || echo "a random axis")"
+        sets+=("$name=$dir")
+      done
+    done
+  done
+  [[ -z ${RIGEL_REAL_DATA:-} ]] || sets+=("euroc_loop=$RIGEL_REAL_DATA/euroc_loop")
+  "$root/test/solver_choice_times.py" "$bin" "${sets[@]}"
 } >"$work/tables"
 mv "$work/tables" "$out"
 echo "wrote $out" >&2
