@@ -212,8 +212,9 @@ class RansacRun {
   // A sample of inliers was drawn with the confidence asked for, or there is none, or the work is
   // used up.
   bool Done() const {
-    return exhausted_ || !(result_.work_us < options_.max_work_us) || result_.iterations >= std::min(options_.max_iterations,
-                                                        std::max(needed_, options_.min_iterations));
+    return exhausted_ || !(result_.work_us < options_.max_work_us) ||
+           result_.iterations >=
+               std::min(options_.max_iterations, std::max(needed_, options_.min_iterations));
   }
 
   // Optimizes the best hypothesis and the finalists: at the end, or to see how good they are.
