@@ -11,6 +11,7 @@
 #include <Eigen/LU>
 
 #include "rigel/core/epipolar.h"
+#include "rigel/core/rig_centre.h"
 #include "rigel/refine/inlier_selection.h"
 #include "rigel/test/refine/refine_scene.h"
 
@@ -69,7 +70,14 @@ SceneOptions Scene(double inter_share, MotionPattern motion) {
   return options;
 }
 
-// Columns: the free directions at the truth, from the description in the header.
+// Columns: the free directions at the truth, from the description in the header. Of the body by
+// those of the rig's centre, whose motion is fitted.
+Eigen::MatrixXd OfBody(const FramePair& pair, const Eigen::MatrixXd& of_centre) {
+  const Eigen::Matrix<double, 6, 6> jacobian =
+      BodyFromPointJacobian(pair.truth->R, RigCentre(pair.rig));
+  return jacobian * of_centre;
+}
+
 Eigen::MatrixXd Basis(const Eigen::MatrixXd& rotation, const Eigen::MatrixXd& translation) {
   Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(6, rotation.cols() + translation.cols());
   basis.topLeftCorner(3, rotation.cols()) = rotation;
@@ -103,26 +111,27 @@ TEST(CramerRao, MatchesNumericDifferentiationForEachForm) {
     for (const bool scale_free : {true, false}) {
       const FramePair pair =
           ScenePair(Scene(scale_free ? 0.5 : 0.0, MotionPattern::kPlanar), index);
-      const Eigen::MatrixXd across = TangentBasis(pair.truth->t.normalized());
+      const Eigen::Vector3d direction =
+          MotionOfPoint(*pair.truth, RigCentre(pair.rig)).t.normalized();
+      const Eigen::MatrixXd across = TangentBasis(direction);
       const Eigen::MatrixXd all_t = I;
       RefineOptions options;
       const Eigen::MatrixXd free_t = scale_free ? all_t : across;
-      ExpectBound(options, pair, Basis(I, free_t), none);
+      ExpectBound(options, pair, OfBody(pair, Basis(I, free_t)), none);
       // A depth form frees what kFull does, before its reference takes something away.
       options.form = RefineForm::kDepths;
-      ExpectBound(options, pair, Basis(I, free_t), none);
+      ExpectBound(options, pair, OfBody(pair, Basis(I, free_t)), none);
       for (const RefineForm form : {RefineForm::kPrior, RefineForm::kPriorDepths}) {
         options.form = form;
         options.prior_kind = PriorKind::kVertical;
-        ExpectBound(options, pair, Basis(*pair.prior.gravity2, free_t), none);
+        ExpectBound(options, pair, OfBody(pair, Basis(*pair.prior.gravity2, free_t)), none);
         options.prior_kind = PriorKind::kAxis;
-        ExpectBound(options, pair, Basis(*pair.prior.axis, free_t), none);
+        ExpectBound(options, pair, OfBody(pair, Basis(*pair.prior.axis, free_t)), none);
         options.prior_kind = PriorKind::kPlanar;
         const Eigen::Vector3d n = *pair.prior.normal;
-        const Eigen::MatrixXd in_plane = scale_free
-                                             ? Eigen::MatrixXd(TangentBasis(n))
-                                             : Eigen::MatrixXd(n.cross(pair.truth->t.normalized()));
-        ExpectBound(options, pair, Basis(n, in_plane), none);
+        const Eigen::MatrixXd in_plane =
+            scale_free ? Eigen::MatrixXd(TangentBasis(n)) : Eigen::MatrixXd(n.cross(direction));
+        ExpectBound(options, pair, OfBody(pair, Basis(n, in_plane)), none);
       }
     }
   }
