@@ -56,7 +56,7 @@ FramePair MakeHostilePair(int num_matches, uint64_t seed) {
   for (Match& match : pair.matches) {
     match.camera1 = random.Index(2);
     match.camera2 = random.Index(2);
-    for (Eigen::Vector2d* pixel : {&match.pixel1, &match.pixel2}) {
+    for (Pixel* pixel : {&match.pixel1, &match.pixel2}) {
       pixel->x() = random.Uniform(0.0, kWidth);
       pixel->y() = random.Uniform(0.0, kHeight);
     }

@@ -556,7 +556,7 @@ RefineSummary Refiner::Run(Pose* pose) {
   if (!done) return summary_;
 
   summary_.exceeds_chance =
-      ExceedsChance(matches_, pose, num_inliers_, options_.threshold_px, options_.num_tries);
+      ExceedsChance(matches_, result, num_inliers_, options_.threshold_px, options_.num_tries);
   CountCameraPairs(result);
   if (stopped) {
     summary_.termination = Termination::kStopped;

@@ -170,7 +170,6 @@ int RunRansac() {
     options.experiment = RansacExperiment::kFiles;
     std::vector<FramePair> pairs;
     std::vector<std::string> ignored;  // told when they are read
-    std::string error;
     if (!OutputsAreNoInputs({{"json", FLAGS_json}}, ListMatchFiles(FLAGS_matches, &ignored),
                             &error)) {
       return UsageError(error);

@@ -12,6 +12,7 @@
 Exit code: 0 done, 1 failed, 2 wrong flag, 3 matplotlib is missing.
 """
 import argparse
+import atexit
 import base64
 import errno
 import fcntl
@@ -21,8 +22,10 @@ import json
 import math
 import os
 import re
+import shutil
 import stat
 import sys
+import tempfile
 import unicodedata
 import zlib
 
@@ -31,6 +34,21 @@ NO_MATPLOTLIB = 3
 MISLEADING = "\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\ufeff"
 GUARD = "RIGEL_PLOT_SECOND_PYTHON"
 
+
+def give_matplotlib_a_folder():
+    """matplotlib keeps a cache of fonts, and complains where the user has no home for it."""
+    if "MPLCONFIGDIR" in os.environ:
+        return None
+    home = os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~")
+    if os.path.isdir(home) and os.access(home, os.W_OK | os.X_OK):
+        return None
+    folder = tempfile.mkdtemp(prefix="rigel_plot_")
+    os.environ["MPLCONFIGDIR"] = folder
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+cache = give_matplotlib_a_folder()
 try:
     import matplotlib
     matplotlib.use("Agg")
@@ -43,6 +61,9 @@ except ImportError:
     if os.path.exists(debian) and os.path.realpath(sys.executable) != os.path.realpath(debian) \
             and GUARD not in os.environ:
         os.environ[GUARD] = "1"
+        if cache:
+            shutil.rmtree(cache, ignore_errors=True)
+            del os.environ["MPLCONFIGDIR"]
         os.execv(debian, [debian] + sys.argv)
     if not {"-h", "--help"} & set(sys.argv):
         print("rigel_plot.py: matplotlib is missing (Debian: apt install python3-matplotlib)",

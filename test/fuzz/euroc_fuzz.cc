@@ -29,11 +29,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
 
   rigel::ImageSequence sequence;
   std::string error;
-  if (!rigel::ReadEurocSequence(folder.Path(""), &sequence, &error)) {
+  if (!rigel::ReadEurocSequence(folder.Path(""), rigel::EurocOptions(), &sequence, &error)) {
     rigel::fuzz::RequireMessage(error);
     return 0;
   }
-  Require(!sequence.cameras.empty() && !sequence.frames.empty(), "cameras and frames");
+  Require(!sequence.cameras.empty() && sequence.frames.size() > 0, "cameras and frames");
   rigel::Rig rig;
   for (const rigel::ImageCamera& camera : sequence.cameras) rig.cameras.push_back(camera.camera);
   Require(rig.IsValid(&error), "what was read is valid: " + error);

@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   std::string error;
 
   // The first line of the file says which run it is, the input stands for the others.
-  folder.Write("points.jsonl", rigel::PlanLine(plan) + parts[0]);
+  folder.Write("points.jsonl", rigel::PlanLine(plan, "") + parts[0]);
   rigel::ExperimentStore store;
   if (store.Open(folder.Path("points.jsonl"), plan, true, &error)) {
     rigel::ExperimentJson(plan, store.RowsInOrder(plan));

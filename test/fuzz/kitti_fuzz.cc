@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   rigel::ImageSequence sequence;
   std::string error;
   if (rigel::ReadKittiSequence(folder.Path(""), "00", &sequence, &error)) {
-    Require(sequence.cameras.size() == 2 && !sequence.frames.empty(), "cameras and frames");
+    Require(sequence.cameras.size() == 2 && sequence.frames.size() > 0, "cameras and frames");
     rigel::Rig rig;
     for (const rigel::ImageCamera& camera : sequence.cameras) rig.cameras.push_back(camera.camera);
     Require(rig.IsValid(&error), "what was read is valid: " + error);

@@ -20,8 +20,6 @@
 
 namespace rigel {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-
 // Pair `index` of the scene; the running test fails if there is none.
 inline FramePair ScenePair(const SceneOptions& options, int index) {
   FramePair pair;

@@ -286,6 +286,18 @@ TEST_F(PlotTest, TheSameResultsGiveTheSameFigures) {
   EXPECT_EQ(ReadText(Path("f/outliers.png")), ReadText(Path("g/outliers.png")));
 }
 
+TEST_F(PlotTest, NeedsNoHome) {
+  SKIP_WITHOUT_MATPLOTLIB();
+  WritePoses(Path("poses.txt"));
+  const std::string plot = std::string(RIGEL_PROGRAMS) + "/rigel_plot.py";
+  const std::string command = "env -u MPLCONFIGDIR -u XDG_CONFIG_HOME HOME=" + Path("no_home") +
+                              " " + plot + " --estimate=" + Path("poses.txt") +
+                              " --output=" + Path("figures") + " 2>" + Path("talk");
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  EXPECT_THAT(ReadText(Path("talk")), Not(HasSubstr("Matplotlib")));
+  ExpectFigure(Path("figures/trajectory"));
+}
+
 TEST_F(PlotTest, DrawsReportsBenchmarksAndTrajectories) {
   SKIP_WITHOUT_MATPLOTLIB();
   const std::string matches = Simulate("m", {"--pairs=3"});
