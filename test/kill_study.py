@@ -5,8 +5,9 @@
 
 Each of rigel_experiment, rigel_match, rigel_calibrate_prior --in_place and rigel_compare is killed
 (SIGKILL) at that many moments, drawn uniformly from the time that it takes, and at as many within
-its last tenth, when it writes. The next run must end with code 0, leave no file that an undisturbed
-run does not leave, and each file the same to the last byte.
+3 ms after its first temporary file is seen. The next run must end with code 0, leave no file that
+an undisturbed run does not leave, and each file the same to the last byte. Only kills that found
+the program at work count.
 
 Exit code: 0 all as it should be, 1 not, 77 there are no programs.
 """
@@ -116,10 +117,18 @@ def cases(work):
     return result
 
 
-def kill_at(case, moment):
-    """Whether the program was still at work then."""
+def is_writing(directory):
+    with os.scandir(directory) as entries:
+        return any(".rigel-tmp" in entry.name for entry in entries)
+
+
+def kill(case, moment, writing):
+    """Kills the program that many seconds after it began, or began to write. Whether it was still
+    at work then."""
     with subprocess.Popen(case.command, stdout=subprocess.DEVNULL,
                           stderr=subprocess.DEVNULL) as process:
+        while writing and process.poll() is None and not is_writing(case.out):
+            pass
         try:
             process.wait(moment)
             return False
@@ -137,13 +146,14 @@ def study(case, kills, generator):
         print(f"{case.name}: the undisturbed run fails: {undisturbed.stderr}")
         return False
     expected = files_of(case.out)
-    moments = [generator.uniform(0, length) for _ in range(kills)] + \
-        [generator.uniform(0.9 * length, length) for _ in range(kills)]
-    killed = partial = left_over = wrong = 0
-    for moment in moments:
+    runs = killed = partial = left_over = wrong = 0
+    while killed < 2 * kills and runs < 20 * kills:
+        writing = killed >= kills
+        moment = generator.uniform(0, 0.003 if writing else length)
         case.prepare()
         before = files_of(case.out)
-        killed += kill_at(case, moment)
+        killed += kill(case, moment, writing)
+        runs += 1
         after = files_of(case.out)
         left_over += bool(set(after) - set(expected))
         partial += after not in (before, expected)
@@ -152,11 +162,11 @@ def study(case, kills, generator):
         if run.returncode == 0 and now == expected:
             continue
         wrong += 1
-        print(f"{case.name}, killed after {moment:.3f} s: exit code {run.returncode}\n{run.stderr}"
+        print(f"{case.name}, killed {moment:.4f} s after it began{' to write' if writing else ''}: exit code {run.returncode}\n{run.stderr}"
               f"  too many: {sorted(set(now) - set(expected))}\n"
               f"  missing: {sorted(set(expected) - set(now))}\n"
               f"  differ: {sorted(k for k in expected if k in now and now[k] != expected[k])}")
-    print(f"{case.name:16} {length:6.2f} s {len(moments):5} runs {killed:4} killed at work, "
+    print(f"{case.name:16} {length:6.2f} s {runs:5} runs {killed:4} killed at work, "
           f"{partial:3} with a part done, {left_over:3} with left-overs; wrong afterwards: {wrong}",
           flush=True)
     return wrong == 0

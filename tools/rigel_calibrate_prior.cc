@@ -330,9 +330,16 @@ int Run() {
     std::cerr << error << "\n";
     return kExitFailed;
   }
-  if (writes && Targets(input.paths, &error).empty()) {
-    std::cerr << error << "\n";
-    return kExitFailed;
+  if (writes) {
+    const std::vector<std::string> targets = Targets(input.paths, &error);
+    if (targets.empty()) {
+      std::cerr << error << "\n";
+      return kExitFailed;
+    }
+    for (const std::string& target : targets) {
+      if (!SameOutputFile(target, FLAGS_json)) continue;
+      return UsageError("--json=" + FLAGS_json + ": a match file goes to this file; name another");
+    }
   }
   struct Estimated {
     CalibrationMotion motion;

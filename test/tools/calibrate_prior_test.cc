@@ -207,6 +207,10 @@ TEST_F(CalibratePriorTest, TargetsThatWouldDestroyAreRefused) {
       RunTool("calibrate_prior", {"--matches=" + a + "," + b, "--output=" + Path("out")});
   EXPECT_EXIT_CODE(twice, 1);
   EXPECT_THAT(Lines(twice.err), ElementsAre(HasSubstr("another file has the same name")));
+  const Outcome report = RunTool("calibrate_prior", {"--matches=" + a, "--output=" + Path("out"),
+                                                     "--json=" + Path("out/000003.matches")});
+  EXPECT_EXIT_CODE(report, 2);
+  EXPECT_THAT(report.err, HasSubstr("a match file goes to this file"));
   WriteText(Path("file"), "no directory\n");
   const Outcome file = RunTool("calibrate_prior", {"--matches=" + a, "--output=" + Path("file")});
   EXPECT_EXIT_CODE(file, 1);

@@ -10,6 +10,7 @@ namespace {
 
 using testing::Each;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kSanitized = true;
@@ -62,6 +63,29 @@ TEST_F(LimitsTest, AFileThatThereIsNoMemoryForDoesNotStopTheOthers) {
       const Json report = ParseReport(run.out);
       EXPECT_GE(report["pairs"].size(), threads == std::string("--threads=1") ? 5u : 1u);
     }
+  }
+}
+
+TEST_F(LimitsTest, FilesOfNoEndAreToldAndNotReadToIt) {
+  namespace fs = std::filesystem;
+  const std::string sparse = matches_ + "/000001.matches";
+  const std::string device = matches_ + "/000003.matches";
+  std::error_code no_such_size;
+  fs::resize_file(sparse, uintmax_t{10} << 40, no_such_size);  // 10 TiB
+  if (no_such_size) fs::resize_file(sparse, uintmax_t{3} << 30);
+  fs::remove(device);
+  fs::create_symlink("/dev/zero", device);
+  for (const char* tool : {"estimate", "compare"}) {
+    const Outcome run = RunTool(tool, {"--matches=" + matches_, "--json=-"});
+    EXPECT_EXIT_CODE(run, 1);
+    EXPECT_THAT(Lines(run.err),
+                testing::ElementsAre(
+                    testing::AllOf(StartsWith(sparse + ": "), HasSubstr("no more than 2 GiB")),
+                    testing::AllOf(StartsWith(device), HasSubstr("a NUL byte"))));
+    const Json report = ParseReport(run.out);
+    EXPECT_EQ(
+        tool == std::string("compare") ? report["pairs"].get<size_t>() : report["pairs"].size(),
+        4u);
   }
 }
 
