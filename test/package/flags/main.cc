@@ -46,7 +46,7 @@ int main() {
   Check(rigel::MakeScenePair(scene, 0, &pair, &error), "a scene");
 
   const rigel::MotionEstimate estimate = rigel::EstimateMotion(rigel::EstimateOptions(), pair);
-  Check(estimate.HasMotion(), "a motion");
+  Check(estimate.HasMotion(), ("a motion: " + estimate.message).c_str());
   Check(estimate.refine.covariance.has_value(), "a covariance");
   if (failures > 0) return 1;
 
