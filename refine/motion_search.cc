@@ -142,7 +142,8 @@ class Search {
       if (!constrained) coverage = std::max(coverage, Coverage(*solvers_[k], matches_));
       // Where the budget is small each gets a part of it.
       const int left = static_cast<int>(order.size() - i);
-      attempt.Advance(std::min(kProbeIterations, std::max(1, budget_ / left)), &budget_);
+      const int probe = i == 0 && constrained ? kFirstIterations : kProbeIterations;
+      attempt.Advance(std::min(probe, std::max(1, budget_ / left)), &budget_);
       attempt.Settle();
       if (!attempt.result().found) continue;
       const Doubt doubt = DoubtOf(attempt);

@@ -18,7 +18,7 @@ solvers=3pt,4pt,4pt-axis,5pt+1,auto
   echo "# Which solver, and what \`auto\` does"
   echo
   echo "\`--solver=auto\` begins with the most constrained solver that the priors allow: \`3pt\` (planar motion), \`4pt\` (known"
-  echo "vertical), \`4pt-axis\` (known axis). Where there is cause for doubt in what it finds in 100 iterations, those that need no"
+  echo "vertical), \`4pt-axis\` (known axis). Where there is cause for doubt in what it finds in 50 iterations, those that need no"
   echo "prior are asked for 100: \`5pt+1\`, and where most of the matches are of camera pairs that have no five, \`6pt-ventura\` and"
   echo "\`17pt-li\`. The other constrained ones come after them. The first whose motion gives no cause for doubt goes on alone; if"
   echo "there is none, the best constrained one and those without a prior take turns until the one that leads has drawn a sample"
@@ -27,7 +27,7 @@ solvers=3pt,4pt,4pt-axis,5pt+1,auto
   echo "than 2 degrees. What was tried and why is in the JSON of rigel_estimate, \`auto\`."
   echo
   echo "The refinement does not hold the prior, so that what a prior is worth is time: with many outliers the smaller sample"
-  echo "needs fewer iterations, and a wrong prior costs what the first 100 iterations take. What is weighed in the refinement"
+  echo "needs fewer iterations, and a wrong prior costs what the first 50 iterations take. What is weighed in the refinement"
   echo "(\`--use_prior_in_refine\`) must be right."
   echo
   echo "$pairs pairs a row, 300 intra-camera matches, 50 percent outliers, 0.5 px; \`planar\` is motion in the plane, \`random\`"
