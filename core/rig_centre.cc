@@ -27,9 +27,8 @@ Pose MotionOfBody(const Pose& of_point, const Eigen::Vector3d& point) {
   return MotionOfPoint(of_point, -point);
 }
 
-Eigen::Matrix<double, 6, 6> BodyFromPointJacobian(const Eigen::Matrix3d& R,
-                                                  const Eigen::Vector3d& point) {
-  Eigen::Matrix<double, 6, 6> jacobian = Eigen::Matrix<double, 6, 6>::Identity();
+Matrix6d BodyFromPointJacobian(const Eigen::Matrix3d& R, const Eigen::Vector3d& point) {
+  Matrix6d jacobian = Matrix6d::Identity();
   jacobian.block<3, 3>(3, 0) = Skew(R * point);
   return jacobian;
 }

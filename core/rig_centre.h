@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "rigel/core/eigen_types.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/rig.h"
 
@@ -25,11 +26,9 @@ Rig WithOrigin(const Rig& rig, const Eigen::Vector3d& origin);
 Pose MotionOfPoint(const Pose& body, const Eigen::Vector3d& point);
 Pose MotionOfBody(const Pose& of_point, const Eigen::Vector3d& point);
 
-// d(d, e) of the body by that of the point, for R <- Exp(d) R, t <- t + e and the same of b: e =
-// e_b
-// + [R c]x d. That of -point is the inverse.
-Eigen::Matrix<double, 6, 6> BodyFromPointJacobian(const Eigen::Matrix3d& R,
-                                                  const Eigen::Vector3d& point);
+// d(d, e) of the body by that of the point, for R <- Exp(d) R, t <- t + e and the same of b:
+// e = e_b + [R c]x d. That of -point is the inverse.
+Matrix6d BodyFromPointJacobian(const Eigen::Matrix3d& R, const Eigen::Vector3d& point);
 
 // The body's motion whose t has the given length > 0 with R and the direction of the point's motion
 // as they are; of two such motions the longer. Where none has that length, |b| has it. Unchanged at

@@ -142,7 +142,9 @@ FramePair MakePair(const SolverInfo* solver, bool inter, int num_matches) {
 PreparedMatches Prepare(const FramePair& pair, PriorKind kind) {
   Alignment alignment;
   std::string error;
-  EXPECT_TRUE(MakeAlignment(pair.prior, kind, &alignment, &error)) << error;
+  MotionPrior prior = pair.prior;
+  prior.forward = Eigen::Vector3d::UnitZ();
+  EXPECT_TRUE(MakeAlignment(prior, kind, &alignment, &error)) << error;
   return PreparedMatches(pair.rig, pair.matches, alignment);
 }
 

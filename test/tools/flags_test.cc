@@ -33,6 +33,7 @@ const Args kEstimationFlags = {"confidence",
                                "shard",
                                "threads",
                                "threshold_px",
+                               "time_limit_ms",
                                "use",
                                "use_prior_in_refine"};
 
@@ -49,7 +50,7 @@ std::map<std::string, Args> FlagsOfTools() {
                                            "solver", "truth_trajectory", "tum_trajectory"}},
       {"match",
        {"euroc_root", "features", "first", "kitti_root", "last", "max_features", "output", "ratio",
-        "resume", "sequence", "stride", "threads"}},
+        "resume", "sequence", "stride", "sync_tolerance_ms", "threads"}},
       {"simulate",
        {"every", "inter_share", "match_scores", "motion", "moving_share", "noise_px", "num_cameras",
         "num_matches", "outlier_share", "output", "pairs", "poses", "ring", "rotation_axis",
