@@ -143,8 +143,8 @@ bool ParseStatisticBounds(std::string_view text, std::vector<StatisticBound>* bo
     if (slash != std::string_view::npos) {
       bound.solver = name.substr(0, slash);
       if (!IsSolverName(bound.solver)) {
-        *error = quoted + ": there is no solver " + Quoted(bound.solver) +
-                 "; expected one of " + SolverNamesWithAuto();
+        *error = quoted + ": there is no solver " + Quoted(bound.solver) + "; expected one of " +
+                 SolverNamesWithAuto();
         return false;
       }
     }

@@ -88,7 +88,7 @@ struct MotionEstimate {
   StopReason stopped = StopReason::kNone;
   // Something speaks against the motion, as where the prior is wrong: see Doubt.
   bool doubtful = false;
-  std::string doubt;  // what; empty if nothing does
+  std::string doubt;                 // what; empty if nothing does
   std::vector<RigDoubt> rig_doubts;  // of a refined motion; the estimate is as without them
 
   bool HasMotion() const {

@@ -111,8 +111,7 @@ bool MotionParameterization::Set(RotationForm rotation, TranslationForm translat
 }
 
 // d t / d(l1, l2) of the reference.
-Matrix3x2d MotionParameterization::DepthDirections(
-    const Eigen::Matrix3d& R) const {
+Matrix3x2d MotionParameterization::DepthDirections(const Eigen::Matrix3d& R) const {
   Matrix3x2d directions;
   directions << -(R * reference_.ray1.x), reference_.ray2.x;
   return directions;

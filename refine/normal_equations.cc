@@ -59,8 +59,7 @@ void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatche
 }
 
 void Leverages(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
-               const double* weights, const Matrix6d& covariance,
-               double* leverages) {
+               const double* weights, const Matrix6d& covariance, double* leverages) {
   FundamentalDerivatives D;
   const RowMajor3d F = Differentiate(matches, group, pose, &D);
   const Eigen::Map<const Eigen::Matrix<double, 9, 6, Eigen::RowMajor>, 0, Eigen::OuterStride<8>>

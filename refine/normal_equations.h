@@ -29,8 +29,7 @@ void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatche
 // is the leverage of a match that is one of them: 0 to 1, over all matches the number of
 // parameters.
 void Leverages(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
-               const double* weights, const Matrix6d& covariance,
-               double* leverages);
+               const double* weights, const Matrix6d& covariance, double* leverages);
 
 }  // namespace rigel
 

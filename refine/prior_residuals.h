@@ -25,7 +25,8 @@ class PriorResiduals {
  public:
   using Residuals =
       Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMaxPriorResiduals, 1>;
-  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::DontAlign, kMaxPriorResiduals, 6>;
+  using Jacobian =
+      Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::DontAlign, kMaxPriorResiduals, 6>;
 
   PriorResiduals() = default;
   // The weights of axis and normal depend on the angle and |t| of `start` and stay fixed.

@@ -17,7 +17,6 @@ namespace rigel {
 
 namespace {
 
-
 // Of an information matrix with a unit diagonal: what rounding in pixels of some hundred makes of
 // zero stays below this.
 constexpr double kMinEigenvalue = 1e-11;

@@ -1,5 +1,6 @@
-// What a program exchanges with the library: sizes, an estimate with its covariance, factors, cost functions. Prints the
-// sizes, which are to be the same whatever the flags. Exit 0 if every check holds.
+// What a program exchanges with the library: sizes, an estimate with its covariance, factors, cost
+// functions. Prints the sizes, which are to be the same whatever the flags. Exit 0 if every check
+// holds.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -57,7 +58,8 @@ int main() {
   const Eigen::Vector2d pixel = pair.matches[0].pixel1;
   Check(pair.rig.cameras[0].intrinsics.Normalize(pixel).allFinite(), "a pixel");
   const Eigen::Matrix<double, 6, 6> covariance = *estimate.refine.covariance;
-  Check((covariance - covariance.transpose()).norm() <= 1e-9 * covariance.norm(), "it is symmetric");
+  Check((covariance - covariance.transpose()).norm() <= 1e-9 * covariance.norm(),
+        "it is symmetric");
 
   const rigel::Matrix6d information = rigel::InformationMatrix(estimate.refine, estimate.pose);
   const rigel::Matrix6d root = rigel::SqrtInformation(information);
