@@ -341,7 +341,8 @@ TEST_F(EstimateTest, ZUpBodyGivesItsTurnWhateverThePrior) {
     EXPECT_EXIT_CODE(run, 0);
     // Once, not for each pair.
     EXPECT_EQ(run.err, suggested ? "--down=-z: taken from the cameras of the rig\n" : "");
-    for (const Json& pair : ParseReport(run.out)["pairs"]) {
+    const Json report = ParseReport(run.out);
+    for (const Json& pair : report["pairs"]) {
       const std::vector<double> q = pair["refined"]["q_wxyz"];
       EXPECT_NEAR(RadToDeg(2 * std::acos(std::abs(q[0]))), 12.0, 0.3) << run.command;
       EXPECT_GT(std::abs(q[3]), 0.99 * std::sin(DegToRad(6.0)));
