@@ -2,8 +2,8 @@
 
 # rigel_warnings(target): the warnings that the code base is kept free of.
 function(rigel_warnings target)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow=local -Wnon-virtual-dtor
-                                           -Woverloaded-virtual
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wnon-virtual-dtor -Woverloaded-virtual
+    $<IF:$<CXX_COMPILER_ID:GNU>,-Wshadow=local,-Wshadow>
     # g++ 12 reports Eigen's own temporaries at -O3.
     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   if(RIGEL_WERROR)

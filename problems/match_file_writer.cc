@@ -38,9 +38,9 @@ class Formatter {
     return Word({buffer.data(), size_t(result.ptr - buffer.data())});
   }
 
-  template <int kSize>
-  Formatter& Vector(const Eigen::Matrix<double, kSize, 1>& v) {
-    for (int k = 0; k < kSize; ++k) Number(v[k]);
+  template <typename Derived>
+  Formatter& Vector(const Eigen::MatrixBase<Derived>& v) {
+    for (Eigen::Index k = 0; k < v.size(); ++k) Number(v[k]);
     return *this;
   }
 
