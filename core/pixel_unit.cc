@@ -13,7 +13,9 @@ double PixelUnit(const Rig& rig) {
   return shortest / kFocal;
 }
 
-double DefaultThresholdPx(const Rig& rig) { return 1.5 * PixelUnit(rig); }
+double DefaultThresholdPx(const Rig& rig) {
+  return std::max(1.5 * PixelUnit(rig), kMinThresholdPx);
+}
 
 double ThresholdPx(double threshold_px, const Rig& rig) {
   return threshold_px == kAutoThresholdPx ? DefaultThresholdPx(rig) : threshold_px;

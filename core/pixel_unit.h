@@ -16,7 +16,11 @@ inline constexpr double kAutoThresholdPx = 0.0;
 // One, or 1/450 of the shortest focal length of the rig where that is less.
 double PixelUnit(const Rig& rig);
 
-// 1.5 pixels, or 1/300 of the shortest focal length where that is less.
+// Squares of thresholds beyond these may be zero or infinite.
+inline constexpr double kMinThresholdPx = 1e-12;
+inline constexpr double kMaxThresholdPx = 1e12;
+
+// 1.5 pixels, or 1/300 of the shortest focal length where that is less; kMinThresholdPx at least.
 double DefaultThresholdPx(const Rig& rig);
 
 // `threshold_px`, or the default where it is kAutoThresholdPx.

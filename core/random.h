@@ -1,6 +1,8 @@
 // Random numbers from an explicit seed, the same on every platform.
 //
-// The standard fixes std::mt19937_64 but not its distributions, so those are made here.
+// The standard fixes std::mt19937_64 but not its distributions, so those are made here. Draw once
+// in an expression, or in a braced list: in f(a.Uniform(), a.Uniform()) and a.Uniform() *
+// a.Normal() the order is the compiler's.
 #ifndef RIGEL_CORE_RANDOM_H_
 #define RIGEL_CORE_RANDOM_H_
 

@@ -8,7 +8,8 @@ bool RansacOptions::IsValid(std::string* error) const {
     return false;
   }
   // Beyond these its square is nothing to compute with.
-  if (threshold_px != kAutoThresholdPx && (threshold_px < 1e-12 || threshold_px > 1e12)) {
+  if (threshold_px != kAutoThresholdPx &&
+      (threshold_px < kMinThresholdPx || threshold_px > kMaxThresholdPx)) {
     *error = "threshold_px must lie in 1e-12 to 1e12";
     return false;
   }

@@ -57,8 +57,11 @@ std::string Text(double value) {
 
 // "4pt-axis", "4pt-axis, sequence 06".
 std::string NameOf(const SolverSummary& entry) {
-  return PrintablePath(entry.solver +
-                       (entry.sequence == "all" ? "" : ", sequence " + entry.sequence));
+  constexpr size_t kMaxBytes = 60;
+  std::string name = entry.solver;
+  if (entry.sequence != "all") name += ", sequence " + entry.sequence;
+  if (name.size() > kMaxBytes) name = name.substr(0, kMaxBytes) + "...";
+  return Printable(name);
 }
 
 const SolverSummary* FindEntry(const std::vector<SolverSummary>& entries, const std::string& solver,
@@ -124,6 +127,7 @@ void CheckEntry(const SolverSummary& before, const SolverSummary& now, double to
 bool ParseStatisticBounds(std::string_view text, std::vector<StatisticBound>* bounds,
                           std::string* error) {
   const Json complete = CompleteEntry();
+  const std::string_view all = text;
   std::vector<StatisticBound> parsed;
   while (!text.empty()) {
     const size_t comma = std::min(text.find(','), text.size());
@@ -157,6 +161,10 @@ bool ParseStatisticBounds(std::string_view text, std::vector<StatisticBound>* bo
       return false;
     }
     parsed.push_back(std::move(bound));
+  }
+  if (parsed.empty() && !all.empty()) {
+    *error = "no bound in '" + PrintablePath(std::string(all)) + "'";
+    return false;
   }
   *bounds = std::move(parsed);
   return true;

@@ -63,6 +63,7 @@ struct PairResult {
   int nees_dof = 0;  // 6, or 5 where |t| was held
   double inlier_ratio = 0.0;
   int iterations = 0;
+  std::string doubt;                           // MotionEstimate::doubt; empty if there is none
   std::optional<double> ransac_ms, refine_ms;  // none where times are left out
 
   // No estimate, or one that could not be refined where that was asked for.

@@ -41,6 +41,10 @@ Json ResultJson(const PairResult& r) {
   if (r.nees) object["nees"] = {{"value", *r.nees}, {"degrees_of_freedom", r.nees_dof}};
   object["inlier_ratio"] = r.inlier_ratio;
   object["iterations"] = r.iterations;
+  if (!r.doubt.empty()) {
+    object["doubtful"] = true;
+    object["reason"] = r.doubt;
+  }
   if (r.ransac_ms && r.refine_ms) {
     object["time_ms"] = {{"ransac", *r.ransac_ms}, {"refine", *r.refine_ms}};
   }

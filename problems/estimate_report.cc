@@ -1,6 +1,7 @@
 // Tables, JSON and CSV of rigel_estimate.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -38,6 +39,15 @@ std::string ObservableLetters(const RefineSummary& refine) {
 Json MotionJson(const Pose& pose) {
   const Eigen::Quaterniond q = pose.Quaternion();
   return {{"q_wxyz", {q.w(), q.x(), q.y(), q.z()}}, {"t", {pose.t.x(), pose.t.y(), pose.t.z()}}};
+}
+
+// Three digits, of small ones in powers of ten.
+std::string ResidualText(double px) {
+  constexpr double kLeast = 5e-4;
+  if (!(px > 0.0) || px >= kLeast) return FormatFitted(px, 3, 5);
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.0e", px);
+  return text;
 }
 
 // What became of the solvers of auto: of the last ones nothing, mostly.
@@ -98,7 +108,7 @@ std::string EstimateTable(const EstimateReport& report) {
          direction ? FormatNumber(d.y(), 4) : "-", direction ? FormatNumber(d.z(), 4) : "-",
          direction ? sigma(e.refine.direction_sigma) : "-",
          scale ? FormatFitted(e.pose.t.norm(), 4, 6) : "-", std::to_string(e.num_inliers),
-         refined ? FormatFitted(e.refine.median_residual_px, 3, 5) : "-",
+         refined ? ResidualText(e.refine.median_residual_px) : "-",
          refined ? ObservableLetters(e.refine) : "-"});
   }
   std::string text = table.Format();
@@ -154,7 +164,7 @@ std::vector<std::string> RigDoubtLines(const EstimateReport& report) {
   for (const Line& line : lines) {
     texts.push_back(PrintablePath(line.pair) + ": " + line.first.message +
                     (line.others == 0 ? std::string()
-                                      : " (and so in " + std::to_string(line.others) + " more)"));
+                                      : " (" + std::to_string(line.others + 1) + " files alike)"));
   }
   return texts;
 }

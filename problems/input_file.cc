@@ -14,6 +14,7 @@ namespace rigel {
 namespace {
 
 constexpr size_t kFirstRoom = size_t{1} << 16;  // where nothing tells the size
+constexpr size_t kPiece = size_t{1} << 20;      // read at a time: a NUL byte ends it early
 
 std::string SystemMessage(int error_number) {
   return std::generic_category().message(error_number);
@@ -56,7 +57,7 @@ bool ReadAll(std::FILE* file, size_t size, size_t max_bytes, InputBytes* bytes, 
       return false;
     }
     const char* const begin = bytes->end();
-    const size_t count = std::fread(bytes->end(), 1, bytes->room(), file);
+    const size_t count = std::fread(bytes->end(), 1, std::min(bytes->room(), kPiece), file);
     if (count == 0) break;
     bytes->Added(count);
     if (bytes->size() > max_bytes) {

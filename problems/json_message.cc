@@ -1,5 +1,7 @@
 #include "rigel/problems/json_message.h"
 
+#include "rigel/problems/printable.h"
+
 namespace rigel {
 
 std::string JsonMessage(const std::exception& exception) {
@@ -11,8 +13,10 @@ std::string JsonMessage(const std::exception& exception) {
   }
   const std::string prefix = "[json.exception.";
   const size_t end = message.find("] ");
-  if (message.compare(0, prefix.size(), prefix) != 0 || end == std::string::npos) return message;
-  return message.substr(end + 2);
+  if (message.compare(0, prefix.size(), prefix) == 0 && end != std::string::npos) {
+    message = message.substr(end + 2);
+  }
+  return Printable(message);
 }
 
 }  // namespace rigel

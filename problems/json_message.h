@@ -7,7 +7,8 @@
 
 namespace rigel {
 
-// The message without "[json.exception.NAME.NUMBER] ", shortened in the middle if it is long.
+// The message without "[json.exception.NAME.NUMBER] ", shortened in the middle if it is long, and
+// printable: it quotes the file.
 std::string JsonMessage(const std::exception& exception);
 
 }  // namespace rigel

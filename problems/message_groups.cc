@@ -1,5 +1,6 @@
 #include "rigel/problems/message_groups.h"
 
+#include <algorithm>
 #include <cctype>
 #include <unordered_map>
 #include <unordered_set>
@@ -7,6 +8,24 @@
 #include "rigel/problems/match_file.h"
 
 namespace rigel {
+namespace {
+
+// Counts at the beginning of a word become #: "16 of 200 matches", not the 4 of "4pt" or "x4".
+std::string WithoutNumbers(const std::string& text) {
+  const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  std::string masked;
+  for (size_t k = 0; k < text.size();) {
+    size_t end = k;
+    while (end < text.size() && (is_digit(text[end]) || (end > k && text[end] == '.'))) ++end;
+    const bool is_word = end > k && (k == 0 || text[k - 1] == ' ') &&
+                         (end == text.size() || text[end] == ' ' || text[end] == ',');
+    masked += is_word ? "#" : text.substr(k, std::max<size_t>(end - k, 1));
+    k = std::max(end, k + 1);
+  }
+  return masked;
+}
+
+}  // namespace
 
 std::vector<std::string> GroupMessages(const std::vector<std::string>& messages,
                                        const std::vector<std::string>& files) {
@@ -23,19 +42,27 @@ std::vector<std::string> GroupMessages(const std::vector<std::string>& messages,
     }
     return message;
   };
-  std::vector<std::string> lines;
-  std::vector<int> counts;
-  std::unordered_map<std::string, size_t> line_of;
+  struct Group {
+    std::string line, text;  // the first message, without its name
+    int count = 0;
+    bool same_numbers = true;
+  };
+  std::vector<Group> groups;
+  std::unordered_map<std::string, size_t> group_of;
   for (const std::string& message : messages) {
-    const auto [entry, is_new] = line_of.emplace(without_name(message), lines.size());
-    if (is_new) {
-      lines.push_back(message);
-      counts.push_back(0);
-    }
-    ++counts[entry->second];
+    const std::string text = without_name(message);
+    const auto [entry, is_new] = group_of.emplace(WithoutNumbers(text), groups.size());
+    if (is_new) groups.push_back({message, text, 0, true});
+    Group& group = groups[entry->second];
+    ++group.count;
+    group.same_numbers = group.same_numbers && text == group.text;
   }
-  for (size_t k = 0; k < lines.size(); ++k) {
-    if (counts[k] > 1) lines[k] += " (" + std::to_string(counts[k]) + " files alike)";
+  std::vector<std::string> lines;
+  for (const Group& group : groups) {
+    lines.push_back(group.line);
+    if (group.count == 1) continue;
+    lines.back() += " (" + std::to_string(group.count) + " files alike" +
+                    (group.same_numbers ? ")" : " but for the numbers)");
   }
   return lines;
 }

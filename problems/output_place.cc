@@ -38,7 +38,12 @@ OutputPlace FollowLinks(const std::string& path) {
   std::error_code code;
   fs::path file = fs::absolute(path, code);
   constexpr int kMaxLinks = 40;  // as Linux has it
-  for (int k = 0; k < kMaxLinks; ++k) {
+  for (int k = 0;; ++k) {
+    if (k == kMaxLinks) {  // a loop: whoever opens it is told
+      place.kind = OutputPlace::Kind::kOther;
+      place.path = path;
+      return place;
+    }
     const fs::path directory = fs::canonical(file.parent_path(), code);
     if (code) break;
     file = directory / file.filename();

@@ -14,7 +14,7 @@ struct OutputPlace {
     kNone,        // nothing is there yet
     kRegular,     // a file that can be replaced
     kDirectory,   //
-    kOther,       // a device, a FIFO, a socket: written to, never replaced
+    kOther,       // a device, a FIFO, a socket, a loop of links: written to, never replaced
     kDescriptor,  // an open file of this process: /dev/stdout and its like
   };
   Kind kind = Kind::kNone;

@@ -77,6 +77,10 @@ class PlaneFit {
     PlaneCalibration result;
     result.translations = static_cast<int>(directions_.size());
     result.rotations = static_cast<int>(rotations_.size());
+    if (!start_.allFinite() || !(start_.norm() > 0)) {
+      result.message = "the start is no direction: it must be finite and not zero";
+      return result;
+    }
     result.normal = start_;
     if (result.translations < kMinCalibrationPairs) {
       result.message = "too few motions with a direction of translation: " +

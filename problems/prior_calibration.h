@@ -37,7 +37,7 @@ inline constexpr int kMinCalibrationPairs = 10;
 
 // An estimated motion and what of it is observable.
 struct CalibrationMotion {
-  Pose pose;
+  Pose pose;  // of one point of the body, the rig's centre at best: MotionOfPoint()
   bool has_rotation = true;
   bool has_direction = true;  // of pose.t
   MotionPrior prior;          // as stated, for its gravity
@@ -60,7 +60,8 @@ struct PlaneCalibration {
 // The normal n for which, in most motions, t lies in the plane (t . n = 0) and the rotation is
 // about n. Translations along one line say nothing of the roll of the plane about it, and a drive
 // without turns has no other: the roll is then that of `start`. Least squares with Cauchy weights;
-// the uncertainty is that of the residuals as they are (sandwich estimate).
+// the uncertainty is that of the residuals as they are (sandwich estimate). kNone, with a message,
+// if `start` is not finite or zero.
 PlaneCalibration CalibratePlane(const std::vector<CalibrationMotion>& motions,
                                 const Eigen::Vector3d& start);
 

@@ -50,7 +50,7 @@ std::vector<Problem> MakeProblems(const RefineBenchmarkOptions& options) {
     const double angle = DegToRad(options.start_deg);
     Pose start = *pair.truth;
     start.R = ExpSO3(angle * random.UnitVector3()) * start.R;
-    const Eigen::Vector2d across = Eigen::Vector2d(random.Normal(), random.Normal()).normalized();
+    const Eigen::Vector2d across = Eigen::Vector2d{random.Normal(), random.Normal()}.normalized();
     start.t += std::tan(angle) * start.t.norm() * (TangentBasis(start.t.normalized()) * across);
     GroupedMatches matches(pair.rig, pair.matches);
     problems.push_back({std::move(pair), std::move(matches), start});

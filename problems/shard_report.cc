@@ -75,6 +75,7 @@ PairResult Result(const Json& json) {
   }
   result.inlier_ratio = json.at("inlier_ratio").get<double>();
   result.iterations = JsonInteger(json.at("iterations"), 0);
+  if (json.contains("reason")) result.doubt = json.at("reason").get<std::string>();
   if (json.contains("time_ms")) {
     result.ransac_ms = json.at("time_ms").at("ransac").get<double>();
     result.refine_ms = json.at("time_ms").at("refine").get<double>();

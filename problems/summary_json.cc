@@ -1,6 +1,8 @@
 #include "rigel/problems/summary_json.h"
 
 #include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "rigel/problems/json_text.h"
 
@@ -73,7 +75,9 @@ SolverSummary ParseSummary(const Json& json) {
   s.direction_pairs = JsonInteger(json.at("direction_pairs"), 0);
   const Json none = Json::object();
   const auto group = [&](const char* key) -> const Json& {
-    return json.contains(key) ? json.at(key) : none;
+    const Json& found = json.contains(key) ? json.at(key) : none;
+    if (!found.is_object()) throw std::runtime_error(std::string(key) + " is not an object");
+    return found;
   };
   const Json& raw = group("raw");
   s.raw_rotation_deg = Get(raw, "rotation_deg");

@@ -264,6 +264,10 @@ bool MakeScenePair(const SceneOptions& options, int index, const Pose& truth, Fr
     if (!DrawMatch(options, result.rig, truth, inter, k, &random, &match)) {
       *error = "the motion leaves hardly any point of camera " + std::to_string(match.camera1) +
                " in the view of camera " + std::to_string(match.camera2);
+      if (inter && options.ring && options.num_cameras < kMinRingOfNeighbours) {
+        *error += "; neighbours on a ring of fewer than " + std::to_string(kMinRingOfNeighbours) +
+                  " see nothing in common without a turn";
+      }
       return false;
     }
     match.pixel1 += Noise(options.noise_px, &random);

@@ -34,6 +34,8 @@ bool ParseMotionPattern(std::string_view name, MotionPattern* pattern);
 bool ParseRotationAxisPattern(std::string_view name, RotationAxisPattern* pattern);
 
 inline constexpr int kMaxRing = 16;
+// Cameras of 77 degrees: neighbours of a ring of fewer see nothing in common.
+inline constexpr int kMinRingOfNeighbours = 5;
 
 struct SceneOptions {
   // 1 to 4, the third and fourth at (0, 0.4, 0.3) and (0, -0.4, 0.3) m; of a ring 1 to kMaxRing.

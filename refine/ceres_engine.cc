@@ -15,10 +15,15 @@ namespace {
 class SharedEvaluation : public ceres::EvaluationCallback {
  public:
   SharedEvaluation(const MotionParameterization& parameterization,
-                   const EpipolarResiduals& residuals, const double* parameters)
-      : parameterization_(parameterization), residuals_(residuals), parameters_(parameters) {}
+                   const EpipolarResiduals& residuals, const double* parameters, Stop* stop)
+      : parameterization_(parameterization),
+        residuals_(residuals),
+        parameters_(parameters),
+        stop_(*stop) {}
 
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override {
+    stopped = stopped || stop_.Asked();
+    if (stopped) return;
     if (!new_evaluation_point && (has_jacobians_ || !evaluate_jacobians)) return;
     parameterization_.Evaluate(parameters_, &pose, &basis);
     residuals_.Linearize(pose, evaluate_jacobians ? &basis : nullptr, &groups);
@@ -28,11 +33,13 @@ class SharedEvaluation : public ceres::EvaluationCallback {
   Pose pose;
   MotionBasis basis;
   std::vector<GroupLinearization> groups;
+  bool stopped = false;  // no block evaluates any more: many of them take long
 
  private:
   const MotionParameterization& parameterization_;
   const EpipolarResiduals& residuals_;
   const double* parameters_;
+  Stop& stop_;
   bool has_jacobians_ = false;
 };
 
@@ -45,6 +52,7 @@ class MatchCost : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(size);
   }
   bool Evaluate(double const* const*, double* r, double** jacobians) const override {
+    if (shared_->stopped) return false;
     double* jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
     r[0] = weight_ * residuals_->Evaluate(shared_->groups, k_, size_, jacobian);
     for (int m = 0; m < size_ && jacobian != nullptr; ++m) jacobian[m] *= weight_;
@@ -67,6 +75,7 @@ class PriorCost : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(size);
   }
   bool Evaluate(double const* const*, double* r, double** jacobians) const override {
+    if (shared_->stopped) return false;
     PriorResiduals::Residuals values;
     PriorResiduals::Jacobian by_motion;
     prior_->Evaluate(shared_->pose, &values, &by_motion);
@@ -111,7 +120,7 @@ LeastSquaresSummary SolveWithCeres(const RefineOptions& options, const GroupedMa
                                    double* parameters) {
   const int size = parameterization.size();
   const EpipolarResiduals residuals(matches, options.residual);
-  SharedEvaluation shared(parameterization, residuals, parameters);
+  SharedEvaluation shared(parameterization, residuals, parameters, stop);
   std::deque<MatchCost> costs;
   PriorCost prior_cost(prior, shared, noise_px, size);
   // The algebraic residual is in metres: a scale in pixels means nothing to it.
@@ -133,17 +142,18 @@ LeastSquaresSummary SolveWithCeres(const RefineOptions& options, const GroupedMa
   std::vector<ReprojectionCost::Point> points;
   if (bundle) points.reserve(weights.size());
   for (int k = 0; k < matches.size(); ++k) {
-    if (weights[k] == 0.0) continue;
     // The start is what there is by then.
     if (k % kStopEvery == 0 && stop->Asked()) {
       LeastSquaresSummary summary;
       summary.usable = true;
       return summary;
     }
+    if (weights[k] == 0.0) continue;
     if (bundle) {
       const Match& match = matches.matches()[k];
       points.push_back(ReprojectionCost::Triangulate(matches.rig(), match, start));
-      reprojections.emplace_back(matches.rig(), match, shared.pose, shared.basis, size, weights[k]);
+      reprojections.emplace_back(matches.rig(), match, shared.pose, shared.basis, size, weights[k],
+                                 &shared.stopped);
       problem.AddResidualBlock(&reprojections.back(), loss.get(), parameters, points.back().data());
     } else {
       costs.emplace_back(residuals, shared, k, size, weights[k]);
@@ -177,7 +187,8 @@ LeastSquaresSummary SolveWithCeres(const RefineOptions& options, const GroupedMa
   ceres::Solve(solver_options, &problem, &ceres_summary);
 
   LeastSquaresSummary summary;
-  summary.usable = ceres_summary.IsSolutionUsable();
+  // Stopped within the first evaluation: Ceres leaves the start.
+  summary.usable = ceres_summary.IsSolutionUsable() || shared.stopped;
   summary.initial_cost = ceres_summary.initial_cost;
   summary.final_cost = ceres_summary.final_cost;
   summary.num_iterations = static_cast<int>(ceres_summary.iterations.size());

@@ -36,6 +36,10 @@ bool ExceedsChance(const GroupedMatches& matches, const Pose& pose, int num_inli
   matches.Score(pose, kNear * threshold_px, kNoBound, &near);
   matches.Score(pose, kFar * threshold_px, kNoBound, &far);
   q = std::max(q, (far - near) / ((kFar - kNear) * matches.size()));
+  // Matches of chance are denser at the motion that has most of them than next to it: by up to 1.2
+  // times [rigel_benchmark --ransac=hostile]. Their number does not make up for that.
+  constexpr double kDenser = 1.5;
+  q *= kDenser;
   const double share = k / static_cast<double>(n);
   if (share <= q) return false;
   const double divergence =

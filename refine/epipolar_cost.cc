@@ -226,9 +226,11 @@ ceres::CostFunction* Make(const Rig& rig, const Match& match, double sigma_px,
                           QuaternionOrder order, MotionBlocks motion, bool with_extrinsics) {
   const auto in_rig = [&rig](int camera) { return camera >= 0 && camera < rig.size(); };
   std::string unused;
-  if (!(sigma_px > 0.0) || !std::isfinite(sigma_px) || !std::isfinite(1.0 / sigma_px) ||
-      !in_rig(match.camera1) || !in_rig(match.camera2) || !match.pixel1.allFinite() ||
-      !match.pixel2.allFinite() || !rig.IsValid(&unused) ||
+  // Beyond these a residual or its derivatives may overflow.
+  constexpr double kMinSigmaPx = 1e-12, kMaxSigmaPx = 1e12;
+  if (!(sigma_px >= kMinSigmaPx) || !(sigma_px <= kMaxSigmaPx) || !in_rig(match.camera1) ||
+      !in_rig(match.camera2) || !match.pixel1.allFinite() || !match.pixel2.allFinite() ||
+      !rig.IsValid(&unused) ||
       (order != QuaternionOrder::kCeres && order != QuaternionOrder::kEigen)) {
     return nullptr;
   }

@@ -40,7 +40,7 @@
 // Refine() counts matches near an epipole less (EpipoleWeights() of refine/uncertainty.h); here
 // every match counts in full: give those a larger sigma_px, sigma / weight, for the same.
 //
-// Errors: a factory returns null if sigma_px is not positive and finite, the rig is not valid
+// Errors: a factory returns null if sigma_px is not within 1e-12 and 1e12, the rig is not valid
 // (Rig::IsValid), the match names a camera that is not there, a pixel is not finite or `order` is
 // not a value of its enum; ceres::Problem::AddResidualBlock aborts on null, so test for it.
 // Evaluate() returns false if a parameter is not finite or a quaternion is zero (a squared norm

@@ -170,7 +170,8 @@ MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pai
       if (estimate.refine.stopped != StopReason::kNone) {
         estimate.stopped = estimate.refine.stopped;
         // Refine() knows of no more than what was left of the limit.
-        estimate.message = stop.Asked() ? stop.Message() : estimate.refine.message;
+        if (stop.Asked()) estimate.refine.message = stop.Message();
+        estimate.message = estimate.refine.message;
       }
     } else {
       estimate.status = EstimateStatus::kNotRefined;
@@ -189,6 +190,9 @@ MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pai
     estimate.message = std::to_string(estimate.num_inliers) + " of " +
                        std::to_string(matches.size()) +
                        " matches agree on a motion, no more than chance allows";
+    if (given.solver != kAutoSolver && search.solver->prior != PriorKind::kNone) {
+      estimate.message += "; is the prior right?";
+    }
     if (estimate.stopped != StopReason::kNone) estimate.message += "; " + stop.Message();
     return estimate;
   }

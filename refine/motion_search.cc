@@ -168,6 +168,24 @@ class Search {
     return best;
   }
 
+  // The same, but that of a solver without a prior where it is about as good as one that speaks
+  // against its prior.
+  int Choice() const {
+    constexpr double kAlike = 1.02;  // scores of one motion by two solvers
+    const int best = Best();
+    if (best < 0 || !attempts_[best]->NeedsPrior() || !DoubtOf(*attempts_[best]).leaves_prior) {
+      return best;
+    }
+    for (size_t k = 0; k < attempts_.size(); ++k) {
+      if (attempts_[k] == nullptr || attempts_[k]->NeedsPrior()) continue;
+      const RansacResult<Solution>& result = attempts_[k]->result();
+      if (result.found && result.score <= kAlike * attempts_[best]->result().score) {
+        return static_cast<int>(k);
+      }
+    }
+    return best;
+  }
+
   void TakeTurns() {
     // Of the constrained ones that with the best score, or the first.
     int constrained = -1;
@@ -216,7 +234,7 @@ class Search {
 
   MotionSearch Summary() {
     MotionSearch search;
-    const int best = Best();
+    const int best = Choice();
     for (size_t k = 0; k < solvers_.size(); ++k) {
       SolverTrial& trial = trials_[k];
       if (trial.solver.empty()) {
@@ -232,9 +250,13 @@ class Search {
       search.hypotheses += result.hypotheses;
       if (!result.found) trial.note = "no motion";
       if (search.solver == nullptr || static_cast<int>(k) == best) search.solver = solvers_[k];
-      if (static_cast<int>(k) != best) continue;
+      if (static_cast<int>(k) != best) {
+        if (trial.note.empty()) trial.note = "another motion fits better";
+        continue;
+      }
       search.best = result;
       const Doubt doubt = DoubtOf(*attempts_[k]);
+      trial.num_inliers = doubt.num_inliers;
       trial.note =
           "chosen: " + (doubt.Any() ? "best score, but " + doubt.Reason()
                                     : std::to_string(doubt.num_inliers) + " of " +

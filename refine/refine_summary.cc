@@ -113,8 +113,11 @@ std::string RefineSummary::ObservabilityReport() const {
       std::snprintf(
           text, sizeof(text),
           "|t| is not determined by one camera pair: %d-%d gives the direction of its own "
-          "baseline, (%.3f, %.3f, %.3f)",
-          only->camera1, only->camera2, only->baseline[0], only->baseline[1], only->baseline[2]);
+          "baseline, (%.3f, %.3f, %.3f) from camera %d at time 2 to camera %d at time 1, in the "
+          "body "
+          "frame of time 2",
+          only->camera1, only->camera2, only->baseline[0], only->baseline[1], only->baseline[2],
+          only->camera2, only->camera1);
     } else if (parallax_px >= 0 && !std::isfinite(parallax_px) &&
                !(relative_scale_sigma < kNothingKnown)) {
       std::snprintf(text, sizeof(text), "|t| is not determined by the camera pairs that agree");
@@ -125,7 +128,7 @@ std::string RefineSummary::ObservabilityReport() const {
     } else if (parallax_px >= 0 && !(parallax_px > parallax_limit_px)) {
       std::snprintf(
           text, sizeof(text),
-          "|t| is consistent with zero: 80%% of the matches move < %.2f px, noise %.2f px",
+          "|t| is consistent with zero: 80%% of the matches move < %.3g px, noise %.3g px",
           parallax_px, noise_px);
     } else if (direction_sigma >= 0) {
       std::snprintf(text, sizeof(text),

@@ -8,13 +8,15 @@
 namespace rigel {
 
 ReprojectionCost::ReprojectionCost(const Rig& rig, const Match& match, const Pose& pose,
-                                   const MotionBasis& basis, int size, double weight)
+                                   const MotionBasis& basis, int size, double weight,
+                                   const bool* stopped)
     : camera1_(rig.cameras[match.camera1]),
       camera2_(rig.cameras[match.camera2]),
       match_(match),
       pose_(pose),
       basis_(basis),
-      weight_(weight) {
+      weight_(weight),
+      stopped_(stopped) {
   set_num_residuals(4);
   mutable_parameter_block_sizes()->push_back(size);
   mutable_parameter_block_sizes()->push_back(3);
@@ -32,6 +34,7 @@ ReprojectionCost::Point ReprojectionCost::Triangulate(const Rig& rig, const Matc
 
 bool ReprojectionCost::Evaluate(double const* const* parameters, double* residuals,
                                 double** jacobians) const {
+  if (stopped_ != nullptr && *stopped_) return false;
   const double du = parameters[1][0];
   const double dv = parameters[1][1];
   const double rho = parameters[1][2];

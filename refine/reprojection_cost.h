@@ -24,9 +24,10 @@ class ReprojectionCost : public ceres::CostFunction {
 
   // Parameter blocks: the motion (`size` numbers, whose pose and basis the caller keeps up to date
   // in `pose` and `basis`), and the point. Residuals, pixels times `weight`: (du, dv), projection -
-  // pixel2. All must outlive this object. The match's cameras must be in the rig.
+  // pixel2. All must outlive this object. The match's cameras must be in the rig. Evaluate()
+  // returns false where the point has no image, and while `*stopped` is true (may be null).
   ReprojectionCost(const Rig& rig, const Match& match, const Pose& pose, const MotionBasis& basis,
-                   int size, double weight);
+                   int size, double weight, const bool* stopped = nullptr);
 
   // The point nearest to both rays of the match: (0, 0, rho), rho = 0 if they do not meet in front.
   static Point Triangulate(const Rig& rig, const Match& match, const Pose& pose);
@@ -41,6 +42,7 @@ class ReprojectionCost : public ceres::CostFunction {
   const Pose& pose_;
   const MotionBasis& basis_;
   double weight_;
+  const bool* stopped_;
 };
 
 }  // namespace rigel

@@ -120,7 +120,12 @@ std::vector<RigDoubt> FindRigDoubts(const EstimateOptions& options, const FrameP
     if (!most_rows || fit.rows > fits[*most_rows].rows) most_rows = cameras;
   }
   std::vector<Cameras> to_swap;
+  std::vector<int> few_by_themselves;
+  // A prior that is wrong makes a right rig fit badly.
+  const bool prior_is_cause =
+      estimate.doubtful && FindSolver(estimate.solver)->prior != PriorKind::kNone;
   for (const auto& [cameras, fit] : fits) {
+    if (prior_is_cause) break;
     const bool few = fit.rows >= kMinDoubtRows && most >= kMostFit && fit.Share() < kFewFit * most;
     if (!few || is_frozen(cameras.first) || is_frozen(cameras.second)) continue;
     const bool intra = cameras.first == cameras.second;
@@ -130,9 +135,18 @@ std::vector<RigDoubt> FindRigDoubts(const EstimateOptions& options, const FrameP
     doubts.push_back(
         {RigDoubtKind::kFewFit, cameras.first, cameras.second,
          name + ": " + CountOf(fit) +
-             (intra ? "; are its intrinsics another's, or are these matches wrong?"
+             (intra ? "; is it swapped with another, is its quaternion x y z w, are its intrinsics "
+                      "another's, or are these matches wrong?"
                     : "; are they swapped, is a quaternion x y z w, or are these matches wrong?")});
-    if (!intra) to_swap.push_back(cameras);
+    if (!intra) {
+      to_swap.push_back(cameras);
+      continue;
+    }
+    // Two that no match connects.
+    for (const int other : few_by_themselves) {
+      if (fits.count({other, cameras.first}) == 0) to_swap.push_back({other, cameras.first});
+    }
+    few_by_themselves.push_back(cameras.first);
   }
   const RefineSummary& refine = estimate.refine;
   const bool length_is_missing = refine.IsSolutionUsable() && refine.RigDirectionKnown() &&

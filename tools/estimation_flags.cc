@@ -264,6 +264,27 @@ std::function<void(const RefineProgress&)> ShowRefinement(Progress* progress) {
 
 bool TimesAreGiven() { return !FLAGS_no_times; }
 
+void ReportDoubts(const std::string& solver, const std::vector<DoubtedMotion>& motions) {
+  if (solver == kAutoSolver) return;
+  int count = 0;
+  const DoubtedMotion* first = nullptr;
+  for (const DoubtedMotion& motion : motions) {
+    if (motion.doubt.empty()) continue;
+    ++count;
+    if (first == nullptr) first = &motion;
+  }
+  if (count == 0) return;
+  const bool prior = FindSolver(solver)->prior != PriorKind::kNone;
+  std::cerr << "doubtful: " << solver << ": " << count << " of " << motions.size()
+            << (motions.size() == 1 ? " motion, " : " motions, ")
+            << (count == 1 ? "" : "the first ") << PrintablePath(first->pair) << ": "
+            << first->doubt << "; "
+            << (prior ? "is the prior right (--solver=auto does without it where it is not), or "
+                        "are many of the matches outliers?"
+                      : "are most of the matches outliers?")
+            << "\n";
+}
+
 void ReportUnweighedPriors(const ComparisonOptions& options,
                            const std::vector<std::string>& solvers,
                            const std::vector<FramePair>& pairs) {

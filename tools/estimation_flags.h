@@ -46,6 +46,15 @@ std::function<void(const RefineProgress&)> ShowRefinement(Progress* progress);
 // Whether times are part of the results: not with --no_times.
 bool TimesAreGiven();
 
+// A motion and why it is doubted; empty if it is not.
+struct DoubtedMotion {
+  std::string pair;
+  std::string doubt;
+};
+
+// One line on stderr for the doubtful motions of a solver; none for auto, which says it elsewhere.
+void ReportDoubts(const std::string& solver, const std::vector<DoubtedMotion>& motions);
+
 // Says on stderr where --use_prior_in_refine has nothing to weigh.
 void ReportUnweighedPriors(const ComparisonOptions& options,
                            const std::vector<std::string>& solvers,

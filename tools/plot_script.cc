@@ -16,7 +16,7 @@ namespace rigel {
 namespace {
 
 // What the script exits with where matplotlib is missing.
-constexpr int kNoMatplotlib = 3;
+constexpr int kNoMatplotlib = 4;
 // As a shell has it.
 constexpr int kNoPython = 127;
 

@@ -10,6 +10,7 @@
 #include <gflags/gflags.h>
 
 #include "rigel/core/body_axes.h"
+#include "rigel/core/rig_centre.h"
 #include "rigel/problems/batch.h"
 #include "rigel/problems/calibration_report.h"
 #include "rigel/problems/match_file.h"
@@ -351,10 +352,13 @@ int Run() {
     if (options.use_stated_noise && pair.noise_px) pair_options.refine.noise_px = pair.noise_px;
     const MotionEstimate e = EstimateMotion(pair_options, pair);
     const bool refined = e.status == EstimateStatus::kSuccess && e.refine.IsSolutionUsable();
-    return Estimated{{e.pose, refined && e.refine.rotation_observable,
-                      refined && e.refine.translation_observable, pair.prior},
-                     pair.rig,
-                     refined ? "" : FailureMessage(pair, FLAGS_solver, e.message)};
+    // Any point of a body in planar motion will do. The rig's centre is the one that the matches
+    // say most of.
+    return Estimated{
+        {MotionOfPoint(e.pose, RigCentre(pair.rig)), refined && e.refine.rotation_observable,
+         refined && e.refine.rig_translation_observable, pair.prior},
+        pair.rig,
+        refined ? "" : FailureMessage(pair, FLAGS_solver, e.message)};
   };
   std::vector<BatchItem<Estimated>> items;
   {

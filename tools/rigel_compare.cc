@@ -82,7 +82,8 @@ bool BoundsFromFlags(ReportBounds* bounds, std::string* error) {
     return false;
   }
   if (FLAGS_max_failures < -1) {
-    *error = "--max_failures=" + std::to_string(FLAGS_max_failures) + ": expected a number from 0";
+    *error = "--max_failures=" + std::to_string(FLAGS_max_failures) +
+             ": expected 0 or more, or -1 for no bound";
     return false;
   }
   if (FLAGS_max_failures >= 0) bounds->max_failures = FLAGS_max_failures;
@@ -263,12 +264,17 @@ int Run() {
   ReportUnweighedPriors(options, solvers, comparison.pairs);
   for (const SolverResults& results : comparison.solvers) {
     std::vector<std::string> failures;
+    std::vector<DoubtedMotion> motions;
     for (size_t k = 0; k < results.pairs.size(); ++k) {
-      if (!results.pairs[k].failed) continue;
-      failures.push_back(
-          FailureMessage(comparison.pairs[k], results.solver, results.pairs[k].message));
+      const PairResult& result = results.pairs[k];
+      if (result.failed) {
+        failures.push_back(FailureMessage(comparison.pairs[k], results.solver, result.message));
+      } else {
+        motions.push_back({comparison.pairs[k].name, result.doubt});
+      }
     }
     ReportGrouped(failures, input.paths);
+    ReportDoubts(results.solver, motions);
   }
 
   ComparisonReport report;

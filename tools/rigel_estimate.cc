@@ -176,23 +176,12 @@ bool WriteTrajectories(const std::vector<Trajectory>& trajectories,
 
 // Of a solver that was named; the table says it of auto's.
 void ReportDoubts(const EstimateReport& report) {
-  if (FLAGS_solver == kAutoSolver) return;
-  int count = 0;
-  size_t first = 0;
-  for (size_t k = report.estimates.size(); k-- > 0;) {
-    if (!report.estimates[k].HasMotion() || !report.estimates[k].doubtful) continue;
-    ++count;
-    first = k;
+  std::vector<DoubtedMotion> motions;
+  for (size_t k = 0; k < report.estimates.size(); ++k) {
+    const MotionEstimate& e = report.estimates[k];
+    if (e.HasMotion()) motions.push_back({report.pairs[k].name, e.doubtful ? e.doubt : ""});
   }
-  if (count == 0) return;
-  std::cerr << "doubtful: " << count << " of " << report.estimates.size()
-            << (report.estimates.size() == 1 ? " motion, " : " motions, ")
-            << (count == 1 ? "" : "the first ") << PrintablePath(report.pairs[first].name) << ": "
-            << report.estimates[first].doubt << "; "
-            << (FindSolver(FLAGS_solver)->prior == PriorKind::kNone
-                    ? "are most of the matches outliers?"
-                    : "is the prior right? --solver=auto does without it where it is not")
-            << "\n";
+  ReportDoubts(FLAGS_solver, motions);
 }
 
 int Run() {

@@ -9,7 +9,7 @@
                                            or TUM's (time x y z qx qy qz qw), from above: along
                                            --down, with --forward up the page
 
-Exit code: 0 done, 1 failed, 2 wrong flag, 3 matplotlib is missing.
+Exit code: 0 done, 1 failed, 2 wrong flag, 4 matplotlib is missing.
 """
 import argparse
 import atexit
@@ -29,7 +29,7 @@ import tempfile
 import unicodedata
 import zlib
 
-NO_MATPLOTLIB = 3
+NO_MATPLOTLIB = 4
 # Marks that turn the direction of writing, and the byte order mark.
 MISLEADING = "\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\ufeff"
 GUARD = "RIGEL_PLOT_SECOND_PYTHON"
@@ -731,6 +731,17 @@ def claims_html(report):
     return "\n".join(lines + ["</table>"])
 
 
+def check_output(path, inputs):
+    """An output that is an input would destroy it."""
+    for name in inputs:
+        try:
+            same = os.path.samefile(path, name)
+        except OSError:  # one of them is not there
+            continue
+        if same:
+            raise Bad(f"--html={path}: is the input {name}, which it would destroy")
+
+
 def write_html(path, sections):
     text = PAGE.format(body="\n".join(sections))
     try:
@@ -793,7 +804,12 @@ def run(arguments):
                 part.append("<pre>" + html.escape(file.read()) + "</pre>")
         sections["other"].append("\n".join(part))
 
-    for path, report in inputs_of(arguments.inputs):
+    if arguments.html:
+        check_output(arguments.html, [f for f in (arguments.estimate, arguments.truth) if f])
+    reports = inputs_of(arguments.inputs)
+    if arguments.html:
+        check_output(arguments.html, [path for path, _ in reports])
+    for path, report in reports:
         kind = report.get("format")
         try:
             if kind == CLAIMS:
@@ -815,7 +831,7 @@ def run(arguments):
     if arguments.html:
         write_html(arguments.html, sections["claims"] + sections["other"])
         print(printable(f"wrote {arguments.html}"), file=sys.stderr)
-    print(printable(f"wrote {written} figures (PNG and SVG) to {directory}"), file=sys.stderr)
+    print(printable(f"wrote {written} figure{'' if written == 1 else 's'} (PNG and SVG) to {directory}"), file=sys.stderr)
 
 
 def main():

@@ -24,9 +24,11 @@ DEFINE_string(
     "files of other names is refused");
 DEFINE_int32(pairs, 50, "number of frame pairs");
 DEFINE_int32(num_cameras, 2, "cameras of the rig, 1 to 4; with --ring 1 to 16");
-DEFINE_bool(ring, false,
-            "cameras on a circle of 1 m radius in the plane perpendicular to the body's down, at "
-            "equal angles, facing outwards; matches between cameras are of neighbours");
+DEFINE_bool(
+    ring, false,
+    "cameras on a circle of 1 m radius in the plane perpendicular to the body's down, at "
+    "equal angles, facing outwards; matches between cameras are of neighbours, which from 5 "
+    "cameras on see something in common without a turn");
 DEFINE_int32(num_matches, 200, "number of matches of each pair");
 DEFINE_double(noise_px, 0.5, "1-sigma image noise on each coordinate of both views");
 DEFINE_double(rotation_deg, 1, "rotation angle of each pair");

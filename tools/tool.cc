@@ -75,12 +75,24 @@ std::string FlagName(const std::string& argument) {
   return argument.substr(begin, std::min(argument.find('='), argument.size()) - begin);
 }
 
+// The flag files of the command line: inputs, too.
+std::vector<std::string>& FlagFiles() {
+  static std::vector<std::string> files;
+  return files;
+}
+
 // gflags reads the flag files that a flag file names, and those of an environment variable, until
 // the stack ends where they name each other. Of one file all is read that a user may want; a
-// message if there is more to it.
+// message if there is more to it. gflags opens it again, which a pipe does not bear.
 std::string FlagFileError(const std::string& path) {
   constexpr size_t kMaxBytes = 1 << 20;
   const std::string flag = "--flagfile=" + PrintablePath(path) + ": ";
+  std::error_code code;
+  const auto type = std::filesystem::status(path, code).type();
+  if (type != std::filesystem::file_type::regular && std::filesystem::exists(path, code)) {
+    return flag + "no regular file, expected one";
+  }
+  FlagFiles().push_back(path);
   std::ifstream file(path, std::ios::binary);
   if (!file) return flag + "cannot be opened: " + std::strerror(errno);
   std::string text(kMaxBytes + 1, '\0');
@@ -287,20 +299,27 @@ bool OutputsDiffer(const std::vector<OutputFlag>& outputs, std::string* error) {
 
 bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
                         const std::vector<std::string>& inputs, std::string* error) {
-  std::vector<std::pair<OutputFlag, struct stat>> files;
+  std::vector<std::pair<std::string, struct stat>> files;
+  struct stat status;
+  if (fstat(STDOUT_FILENO, &status) == 0 && S_ISREG(status.st_mode)) {
+    files.emplace_back("stdout", status);
+  }
   for (const OutputFlag& output : outputs) {
     if (output.second.empty() || output.second == "-") continue;
     const OutputPlace place = FollowLinks(output.second);
-    if (S_ISREG(place.status.st_mode)) files.emplace_back(output, place.status);
+    if (S_ISREG(place.status.st_mode)) {
+      files.emplace_back("--" + output.first + "=" + output.second, place.status);
+    }
   }
   if (files.empty()) return true;
-  for (const std::string& input : inputs) {
-    struct stat status;
+  std::vector<std::string> all = inputs;
+  all.insert(all.end(), FlagFiles().begin(), FlagFiles().end());
+  for (const std::string& input : all) {
     if ((input == "-" ? fstat(STDIN_FILENO, &status) : stat(input.c_str(), &status)) != 0) continue;
     for (const auto& [output, of_output] : files) {
       if (status.st_dev != of_output.st_dev || status.st_ino != of_output.st_ino) continue;
-      *error = "--" + output.first + "=" + output.second + ": is the input " +
-               PrintablePath(input == "-" ? "stdin" : input) + ", which it would destroy";
+      *error = output + ": is the input " + PrintablePath(input == "-" ? "stdin" : input) +
+               ", which it would destroy";
       return false;
     }
   }

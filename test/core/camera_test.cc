@@ -22,7 +22,7 @@ TEST(Camera, XIsToTheRightAndYIsDown) {
 TEST(Camera, NormalizeInvertsProject) {
   Random random(1);
   for (int k = 0; k < 100; ++k) {
-    const Eigen::Vector2d pixel(random.Uniform(-100.0, 740.0), random.Uniform(-100.0, 580.0));
+    const Eigen::Vector2d pixel{random.Uniform(-100.0, 740.0), random.Uniform(-100.0, 580.0)};
     const Eigen::Vector3d u = kCamera.Normalize(pixel);
     EXPECT_EQ(u.z(), 1.0);
     const double depth = random.Uniform(0.1, 50.0);

@@ -242,8 +242,8 @@ TEST(Sampson, DoesNotChangeWhenTheMatrixIsScaled) {
     Random random = Random::Stream(5, seed);
     Matrix3d F;
     F << random.NormalVector3(), random.NormalVector3(), random.NormalVector3();
-    const Vector3d pi(random.Normal(), random.Normal(), 1.0);
-    const Vector3d pj(random.Normal(), random.Normal(), 1.0);
+    const Vector3d pi{random.Normal(), random.Normal(), 1.0};
+    const Vector3d pj{random.Normal(), random.Normal(), 1.0};
     const double r = SampsonError(F, pi, pj);
     for (const double scale : {1e-100, 1e-8, 1e3, 1e100}) {
       EXPECT_NEAR(SampsonError(scale * F, pi, pj), r, 1e-12 * std::abs(r)) << scale;

@@ -7,6 +7,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/core/random.h"
+#include "rigel/test/core/random_vector.h"
 
 namespace rigel {
 namespace {
@@ -36,7 +37,7 @@ double RotationDefect(const Matrix3d& R) {
 
 Pose RandomPose(Random* random) {
   Pose pose;
-  pose.R = ExpSO3(random->Uniform(0.0, 3.0) * random->UnitVector3());
+  pose.R = ExpSO3(RandomVector3(0.0, 3.0, random));
   pose.t = 10.0 * random->NormalVector3();
   return pose;
 }
@@ -99,7 +100,7 @@ TEST(Pose, LogAtPiReturnsOneOfTheTwoVectors) {
 TEST(Pose, LogStaysInTheBallOfRadiusPi) {
   Random random(5);
   for (int k = 0; k < kSeeds; ++k) {
-    const Vector3d omega = random.Uniform(kPi, 2 * kPi) * random.UnitVector3();
+    const Vector3d omega = RandomVector3(kPi, 2 * kPi, &random);
     const Vector3d log = LogSO3(ExpSO3(omega));
     EXPECT_LE(log.norm(), kPi + 1e-14);
     EXPECT_LT((ExpSO3(log) - ExpSO3(omega)).norm(), 1e-14);

@@ -4,6 +4,7 @@
 
 #include "rigel/core/pixel_unit.h"
 #include "rigel/core/random.h"
+#include "rigel/test/core/random_vector.h"
 
 namespace rigel {
 namespace {
@@ -24,7 +25,7 @@ TEST(RigCentre, MotionAndPerturbationOfAPointAreThoseOfTheBody) {
   Random random(1);
   for (int k = 0; k < 20; ++k) {
     Pose body;
-    body.R = ExpSO3(random.Uniform(0.0, 3.0) * random.UnitVector3());
+    body.R = ExpSO3(RandomVector3(0.0, 3.0, &random));
     body.t = random.NormalVector3();
     const Eigen::Vector3d point = 10.0 * random.NormalVector3();
     const Pose about = MotionOfPoint(body, point);
@@ -71,6 +72,8 @@ TEST(PixelUnit, IsAShareOfShortFocalLengths) {
   EXPECT_EQ(ThresholdPx(0.7, rig), 0.7);
   rig.cameras[1].intrinsics = {1, 1, 0, 0, 2, 1};
   EXPECT_DOUBLE_EQ(DefaultThresholdPx(rig), 1.0 / 300.0);
+  rig.cameras[0].intrinsics.fx = 1e-300;
+  EXPECT_EQ(DefaultThresholdPx(rig), kMinThresholdPx);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ std::vector<rigel::Match> MakeMatches(const rigel::Rig& rig, const rigel::Pose& 
       const Eigen::Vector3d ray = from.Q * from.intrinsics.Normalize(match.pixel1);
       const Eigen::Vector3d X = from.s + (near + depth * kind / 180.0) * ray;
       match.pixel2 = to.intrinsics.Project(to.Q.transpose() * (motion * X - to.s)) +
-                     noise * Eigen::Vector2d(bytes->Uniform(-1, 1), bytes->Uniform(-1, 1));
+                     noise * Eigen::Vector2d{bytes->Uniform(-1, 1), bytes->Uniform(-1, 1)};
     } else if (kind < 190 && !matches.empty()) {
       match = matches[bytes->Choice(static_cast<int>(matches.size()))];
     } else if (kind < 200) {

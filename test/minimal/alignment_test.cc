@@ -135,8 +135,8 @@ TEST(Alignment, NearestAngleIsTheNearestForOtherRotations) {
   for (int seed = 0; seed < kSeeds; ++seed) {
     Random random = Random::Stream(2, seed);
     const Alignment alignment = Make(MakePrior(seed), PriorKind::kVertical);
-    const Matrix3d R =
-        ExpSO3(0.3 * random.NormalVector3()) * RotationAt(alignment, random.Uniform(-3.0, 3.0));
+    const Matrix3d tilt = ExpSO3(0.3 * random.NormalVector3());
+    const Matrix3d R = tilt * RotationAt(alignment, random.Uniform(-3.0, 3.0));
     const double angle = alignment.NearestAngle(R);
     const double nearest = RotationError(R, RotationAt(alignment, angle));
     for (const double step : {1e-3, 0.1, 1.0, 3.0}) {

@@ -153,7 +153,7 @@ TEST(TwoPointChoi, PointsOnTheHorizonDoNotBreakIt) {
     for (RigCamera& camera : problem.rig.cameras) camera.Q = Eigen::Matrix3d::Identity();
     problem.prior.normal = Eigen::Vector3d::UnitY();
     problem.truth.R = RotationY(rng.Uniform(-0.2, 0.2));
-    problem.truth.t = Eigen::Vector3d(rng.Normal(), 0.0, rng.Normal()).normalized();
+    problem.truth.t = Eigen::Vector3d{rng.Normal(), 0.0, rng.Normal()}.normalized();
     // One of the two, then both; then one a hundredth of a pixel off, which is not degenerate.
     for (const double off : {1e3, 0.0, 0.01}) {
       for (int k = 0; k < 2; ++k) {
@@ -425,7 +425,7 @@ TEST(FivePointPlusOne, ForwardMotionAndCoplanarPoints) {
     for (int k = 0; k < 6; ++k) {
       Match& match = problem.matches[k];
       // The first five on the plane normal . X = 15 of the first camera's frame.
-      const Eigen::Vector2d pixel(rng.Uniform(120.0, 520.0), rng.Uniform(90.0, 390.0));
+      const Eigen::Vector2d pixel{rng.Uniform(120.0, 520.0), rng.Uniform(90.0, 390.0)};
       const Eigen::Vector3d u = problem.rig.cameras[match.camera1].intrinsics.Normalize(pixel);
       const double depth = k < 5 ? std::clamp(15.0 / std::abs(normal.dot(u)), 5.0, 60.0) : 10.0;
       EXPECT_TRUE(MakeMatch(problem.rig, problem.truth, match.camera1, match.camera2, pixel, depth,

@@ -243,7 +243,7 @@ RandomProblem HorizonProblem(int seed, bool inter, int num_on_horizon) {
   const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
   problem.truth.R = RotationY(rng.Uniform(-0.2, 0.2));
   problem.prior.gravity1 = problem.prior.gravity2 = problem.prior.axis = problem.prior.normal = y;
-  problem.truth.t = Eigen::Vector3d(rng.Normal(), 0.0, rng.Normal()).normalized();
+  problem.truth.t = Eigen::Vector3d{rng.Normal(), 0.0, rng.Normal()}.normalized();
   for (int k = 0; k < 4; ++k) {
     Match& match = problem.matches[k];
     const double row = k < num_on_horizon ? 240.0 : rng.Uniform(0.0, 480.0);
@@ -334,11 +334,11 @@ TEST(Baseline4pt, CamerasAboveOneAnotherAlongTheAxisSayNothingOfTheLength) {
       problem.prior.axis = problem.prior.normal = y;
       for (int k = 0; k < 2; ++k) problem.rig.cameras[k].s = (0.5 * k - 0.25) * y;
       problem.truth.R = ExpSO3(random.Uniform(-0.1, 0.1) * y);
-      problem.truth.t = Eigen::Vector3d(random.Normal(), 0.0, random.Normal()).normalized();
+      problem.truth.t = Eigen::Vector3d{random.Normal(), 0.0, random.Normal()}.normalized();
       problem.matches.clear();
       while (problem.matches.size() < 4) {
         const int camera = static_cast<int>(problem.matches.size()) % 2;
-        const Eigen::Vector2d pixel(random.Uniform(0.0, 640.0), random.Uniform(0.0, 480.0));
+        const Eigen::Vector2d pixel{random.Uniform(0.0, 640.0), random.Uniform(0.0, 480.0)};
         Match match;
         if (MakeMatch(problem.rig, problem.truth, camera, camera, pixel, random.Uniform(5.0, 30.0),
                       &match)) {

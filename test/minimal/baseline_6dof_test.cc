@@ -116,7 +116,7 @@ TEST(SeventeenPointLi, LeastSquaresOverManyMatches) {
     RandomProblem problem = MakeRandomProblem(seed, Options(200, MixedPairs(), 5.0));
     Random rng = Random::Stream(17, seed);
     for (Match& match : problem.matches) {
-      match.pixel2 += 0.5 * Eigen::Vector2d(rng.Normal(), rng.Normal());
+      match.pixel2 += 0.5 * Eigen::Vector2d{rng.Normal(), rng.Normal()};
     }
     const PreparedMatches matches = problem.Prepare(PriorKind::kNone);
     std::vector<int> all(200);

@@ -83,7 +83,7 @@ RandomProblem MotionAlong(int axis, const CameraPairs& cameras, int seed, double
   problem.matches.clear();
   while (problem.matches.size() < 4) {
     const auto& pair = cameras[problem.matches.size() % 2];
-    const Eigen::Vector2d pixel(random.Uniform(0.0, 640.0), random.Uniform(0.0, 480.0));
+    const Eigen::Vector2d pixel{random.Uniform(0.0, 640.0), random.Uniform(0.0, 480.0)};
     Match match;
     if (MakeMatch(problem.rig, problem.truth, pair.first, pair.second, pixel,
                   random.Uniform(5.0, 30.0), &match)) {
@@ -133,9 +133,11 @@ TEST(DirectSample, ApproximateRootsGiveTheTranslationOfLeastResidual) {
       ASSERT_EQ(solutions.size(), 1);
       const Eigen::Vector3d expected = matches.alignment().A2.transpose() * t;
       const double error = TranslationDirectionError(expected, solutions[0].t);
-      largest = std::max(largest, std::min(error, M_PI - error));
+      // The residual tells the direction no better than this ratio.
+      const double vague = svd.singularValues()[3] / svd.singularValues()[2];
+      largest = std::max(largest, std::min(error, M_PI - error) / vague);
     }
-    EXPECT_LT(largest, 1e-3) << "axis " << axis;
+    EXPECT_LT(largest, 1.0) << "axis " << axis;
   }
 }
 

@@ -295,7 +295,8 @@ TEST(Polynomial, FindsDoubleRoots) {
   for (uint64_t seed = 0; seed < 2000; ++seed) {
     Random random = Random::Stream(300, seed);
     const double x = random.Normal();
-    const double y = x + (random.Uniform() < 0.5 ? -1.0 : 1.0) * random.Uniform(0.5, 3.0);
+    const double apart = random.Uniform(0.5, 3.0);
+    const double y = random.Uniform() < 0.5 ? x - apart : x + apart;
     EXPECT_LT(Nearest(SolveAny(FromRoots({x, x})), x), 1e-7 * std::abs(x)) << seed;
     EXPECT_LT(Nearest(SolveAny(FromRoots({x, x, y})), y), 1e-9) << seed;
     EXPECT_LT(Nearest(SolveAny(FromRoots({x, x, y})), x), 1e-5) << seed;

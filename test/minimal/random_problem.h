@@ -120,7 +120,7 @@ inline RandomProblem MakeRandomProblem(uint64_t seed, const ProblemOptions& opti
     const int count = static_cast<int>(problem.matches.size());
     if (count == options.num_matches) break;
     const auto& pair = options.cameras[count % options.cameras.size()];
-    const Eigen::Vector2d pixel(rng.Uniform(0.0, 640.0), rng.Uniform(0.0, 480.0));
+    const Eigen::Vector2d pixel{rng.Uniform(0.0, 640.0), rng.Uniform(0.0, 480.0)};
     Match match;
     if (MakeMatch(problem.rig, problem.truth, pair.first, pair.second, pixel,
                   rng.Uniform(5.0, 30.0), &match) &&

@@ -34,7 +34,7 @@ class Problem {
     for (std::vector<double>& values : data_) values.assign(size + kKernelPadding, kNan);
     for (int k = 0; k < size; ++k) {
       RayPair rays;
-      const Eigen::Vector3d X1(random.Uniform(-5, 5), random.Uniform(-5, 5), random.Uniform(4, 20));
+      const Eigen::Vector3d X1{random.Uniform(-5, 5), random.Uniform(-5, 5), random.Uniform(4, 20)};
       Eigen::Vector3d X2 = pose * X1;
       if (random.Index(4) == 0) X2 -= random.Uniform(1, 3) * pose.t * X2.z();
       rays.ray1.x = X1.normalized();

@@ -72,6 +72,7 @@ TEST(StatisticBounds, WhatIsNoBoundIsToldWithWhatWasExpected) {
       {"solver:1", "no such statistic"},
       {"4pt-axes/failures:1", "there is no solver '4pt-axes'"},
       {"failures:1,\x1b[31m:1", "\\x1b"},
+      {",", "no bound in ','"},
   };
   for (const auto& [text, what] : wrong) {
     std::vector<StatisticBound> bounds(1);
@@ -180,6 +181,9 @@ TEST(Baseline, IsReadFromAReport) {
        "\"all\", \"pairs\": 1e300}]}",
        "expected an integer"},
       {std::string(100000, '['), "nested"},
+      {"{\"format\": \"rigel-report 1\", \"results\": [{\"solver\": \"4pt\", \"sequence\": "
+       "\"all\", \"pairs\": 1, \"failures\": 0, \"direction_pairs\": 1, \"refined\": [[[]]]}]}",
+       "refined is not an object"},
   };
   for (const auto& [text, what] : wrong) {
     EXPECT_FALSE(ParseBaseline(text, "r.json", &baseline, &error)) << text;

@@ -79,7 +79,8 @@ TEST(Drift, AgreesWithAPlainSecondImplementation) {
   for (int k = 0; k < 900; ++k) {
     Pose step;
     step.R = ExpSO3(0.02 * random.NormalVector3());
-    step.t = Eigen::Vector3d(0, 0, random.Uniform(0.0, 2.0)) + 0.05 * random.NormalVector3();
+    step.t = 0.05 * random.NormalVector3();
+    step.t.z() += random.Uniform(0.0, 2.0);
     Pose noisy = step;
     noisy.R = ExpSO3(0.002 * random.NormalVector3()) * step.R;
     noisy.t += 0.02 * random.NormalVector3();

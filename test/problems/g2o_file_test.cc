@@ -12,6 +12,7 @@
 #include "rigel/core/rig_centre.h"
 #include "rigel/problems/synthetic.h"
 #include "rigel/refine/between_factor.h"
+#include "rigel/test/core/random_vector.h"
 #include "rigel/test/problems/g2o_reader.h"
 
 namespace rigel {
@@ -48,7 +49,7 @@ Drive RandomDrive(int size) {
     drive.pairs.push_back(pair);
     MotionEstimate e;
     e.status = EstimateStatus::kSuccess;
-    e.pose.R = ExpSO3(random.Uniform(0.0, 1.0) * random.UnitVector3());
+    e.pose.R = ExpSO3(RandomVector3(0.0, 1.0, &random));
     e.pose.t = random.NormalVector3();
     Matrix6d root;
     for (int c = 0; c < 6; ++c) root.col(c) << random.NormalVector3(), random.NormalVector3();

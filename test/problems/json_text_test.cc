@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "rigel/problems/json_message.h"
+#include "rigel/problems/printable.h"
 
 namespace rigel {
 namespace {
@@ -45,6 +46,12 @@ TEST(JsonText, MessagesQuoteOnlyAPart) {
   EXPECT_EQ(QuoteJson(ParseJson("1.5")), "'1.5'");
   EXPECT_EQ(QuoteJson("text"), "'\"text\"'");
   EXPECT_EQ(QuoteJson(std::string(100, 'a')), "'\"" + std::string(29, 'a') + "...'");
+}
+
+TEST(JsonMessage, WhatItQuotesOfAFileIsPrintable) {
+  const std::string message = Message("{\"a\": 1, \x88\x9b: 2}");
+  EXPECT_NE(message, "");
+  EXPECT_EQ(Printable(message), message);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include "rigel/core/angles.h"
 #include "rigel/core/random.h"
 #include "rigel/problems/match_file.h"
+#include "rigel/test/core/random_vector.h"
 
 namespace rigel {
 
@@ -128,12 +129,13 @@ inline void ExpectSame(const FramePair& a, const FramePair& b) {
 inline FramePair RandomPair(uint64_t seed) {
   Random random(seed);
   const auto number = [&random] {
-    return random.Normal() * std::pow(10.0, random.Uniform(-12, 12));
+    const double magnitude = std::pow(10.0, random.Uniform(-12, 12));
+    return magnitude * random.Normal();
   };
   const auto sigma = [&random] { return DegToRad(random.Uniform(1e-6, 30)); };
   const auto pose = [&random] {
     Pose p;
-    p.R = ExpSO3(random.UnitVector3() * random.Uniform(0, kPi));
+    p.R = ExpSO3(RandomVector3(0, kPi, &random));
     p.t = random.NormalVector3();
     return p;
   };

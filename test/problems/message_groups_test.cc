@@ -31,5 +31,16 @@ TEST(MessageGroups, ANameIsOneOfTheFilesWhateverIsInIt) {
               ElementsAre("k: x (2 files alike)", "l: x"));
 }
 
+// A drive has as many messages of a kind as it has numbers of matches.
+TEST(MessageGroups, CountsMakeNoOtherMessage) {
+  const std::vector<std::string> files = {"d/0", "d/1", "d/2", "d/3"};
+  EXPECT_THAT(
+      GroupMessages({"d/0: 4pt: 16 of 200 matches agree", "d/1: 4pt: 7 of 180 matches agree",
+                     "d/2: 3pt: 7 of 180 matches agree", "d/3: x4 is 0.5, expected 1"},
+                    files),
+      ElementsAre("d/0: 4pt: 16 of 200 matches agree (2 files alike but for the numbers)",
+                  "d/2: 3pt: 7 of 180 matches agree", "d/3: x4 is 0.5, expected 1"));
+}
+
 }  // namespace
 }  // namespace rigel

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include <limits>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -236,6 +238,18 @@ TEST(GravityCalibration, StraightDriveGivesNothing) {
   std::vector<CalibrationMotion> none = Drive({}, kTilted, kTilted, 1);
   for (CalibrationMotion& motion : none) motion.prior.gravity2.reset();
   EXPECT_THAT(CalibrateGravity(none).message, HasSubstr("too few pairs that state gravity1"));
+}
+
+TEST(PlaneCalibration, AStartThatIsNoDirectionIsRefused) {
+  const std::vector<CalibrationMotion> motions = Drive({}, kTilted, kTilted, 3);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Eigen::Vector3d& start :
+       {Eigen::Vector3d(0, nan, 0), Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(HUGE_VAL, 0, 0)}) {
+    const PlaneCalibration plane = CalibratePlane(motions, start);
+    EXPECT_EQ(plane.level, CalibrationLevel::kNone);
+    EXPECT_THAT(plane.message, HasSubstr("the start is no direction"));
+    EXPECT_TRUE(plane.normal.allFinite());
+  }
 }
 
 }  // namespace

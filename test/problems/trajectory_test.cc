@@ -6,6 +6,7 @@
 
 #include "rigel/core/random.h"
 #include "rigel/problems/trajectory_file.h"
+#include "rigel/test/core/random_vector.h"
 
 namespace rigel {
 namespace {
@@ -38,7 +39,7 @@ Drive RandomDrive(int size) {
     pair.time2 = 0.1 * (k + 1);
     MotionEstimate e;
     e.status = EstimateStatus::kSuccess;
-    e.pose.R = ExpSO3(random.Uniform(0.0, 1.0) * random.UnitVector3());
+    e.pose.R = ExpSO3(RandomVector3(0.0, 1.0, &random));
     e.pose.t = random.NormalVector3();
     e.raw.R = e.pose.R;
     e.raw.t = 1.1 * e.pose.t;

@@ -257,5 +257,15 @@ TEST_F(WholeFileTest, OneRunAtATimeHasTheLock) {
   EXPECT_THAT(error_, HasSubstr("cannot be written"));
 }
 
+TEST_F(WholeFileTest, ALoopOfLinksStaysOne) {
+  fs::create_symlink("b", Path("a"));
+  fs::create_symlink("a", Path("b"));
+  std::string error;
+  EXPECT_FALSE(WriteWholeFile(Path("a"), "text", &error));
+  EXPECT_THAT(error, testing::HasSubstr("Too many levels of symbolic links"));
+  EXPECT_TRUE(fs::is_symlink(Path("a")));
+  EXPECT_THAT(Names(), ElementsAre("a", "b"));
+}
+
 }  // namespace
 }  // namespace rigel

@@ -11,6 +11,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "rigel/test/core/random_vector.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -46,7 +47,7 @@ Pose RandomPose(int index, Random* random) {
                            random->Uniform(0, kPi), kPi - std::pow(10.0, random->Uniform(-12, -3))};
   Pose pose;
   pose.R = ExpSO3(angles[index % 4] * random->UnitVector3());
-  pose.t = random->Uniform(0.1, 5.0) * random->UnitVector3();
+  pose.t = RandomVector3(0.1, 5.0, random);
   return pose;
 }
 

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "rigel/core/epipolar.h"
+#include "rigel/test/core/random_vector.h"
 #include "rigel/test/refine/jet_geometry.h"
 #include "rigel/test/refine/refine_scene.h"
 
@@ -103,8 +104,8 @@ Blocks MakeBlocks(const Form& form, QuaternionOrder order, const Pose& pose, con
   if (form.absolute) {
     Pose w_b2;
     if (random != nullptr) {
-      w_b2.R = ExpSO3(random->Uniform(0.0, kPi) * random->UnitVector3());
-      w_b2.t = random->Uniform(0.0, 10.0) * random->UnitVector3();
+      w_b2.R = ExpSO3(RandomVector3(0.0, kPi, random));
+      w_b2.t = RandomVector3(0.0, 10.0, random);
     }
     const Pose w_b1 = w_b2 * pose;
     blocks.Add(w_b1.R, w_b1.t, norm());
@@ -222,7 +223,7 @@ Pose RandomPose(int number, Random* random) {
                                          : random->Uniform(0.0, kPi);
   Pose pose;
   pose.R = ExpSO3(angle * random->UnitVector3());
-  pose.t = random->Uniform(0.2, 3.0) * random->UnitVector3();
+  pose.t = RandomVector3(0.2, 3.0, random);
   return pose;
 }
 
@@ -400,7 +401,7 @@ TEST(EpipolarCost, FailsToEvaluateWhereEVanishes) {
       // The zero motion; for inter-camera matches a turn that takes camera j to where i was.
       Pose pose;
       if (!m.IsIntra()) {
-        pose.R = ExpSO3(random.Uniform(0.0, kPi) * random.UnitVector3());
+        pose.R = ExpSO3(RandomVector3(0.0, kPi, &random));
         pose.t = rig.cameras[m.camera2].s - pose.R * rig.cameras[m.camera1].s;
       }
       for (Random* world : {static_cast<Random*>(nullptr), &random}) {
@@ -567,11 +568,11 @@ struct Graph {
 Graph MakeGraph(int number, Random* random) {
   Graph graph;
   graph.w_b.resize(3);
-  graph.w_b[0].R = ExpSO3(random->Uniform(0.0, kPi) * random->UnitVector3());
-  graph.w_b[0].t = random->Uniform(0.0, 100.0) * random->UnitVector3();
+  graph.w_b[0].R = ExpSO3(RandomVector3(0.0, kPi, random));
+  graph.w_b[0].t = RandomVector3(0.0, 100.0, random);
   for (int k = 1; k < 3; ++k) {
     Pose step;  // pose k in the frame of pose k - 1: a metre forwards
-    step.R = ExpSO3(DegToRad(random->Uniform(0.5, 3.0)) * random->UnitVector3());
+    step.R = ExpSO3(RandomVector3(DegToRad(0.5), DegToRad(3.0), random));
     step.t = Eigen::Vector3d(0, 0, 1) + 0.1 * random->UnitVector3();
     graph.w_b[k] = graph.w_b[k - 1] * step;
   }
@@ -646,8 +647,8 @@ TEST(EpipolarCost, ACalibrationFindsTheTruth) {
     Blocks poses(order);
     for (const Pose& pose : graph.w_b) poses.Add(pose.R, pose.t);
     poses.Add(graph.rig.cameras[0].Q, graph.rig.cameras[0].s);
-    poses.Add(ExpSO3(DegToRad(1.0) * random.UnitVector3()) * truth.Q,
-              truth.s + 0.05 * random.UnitVector3());
+    const Eigen::Matrix3d turn = ExpSO3(DegToRad(1.0) * random.UnitVector3());
+    poses.Add(turn * truth.Q, truth.s + 0.05 * random.UnitVector3());
     ceres::Problem problem;
     for (int k = 0; k < poses.size(); k += 2) {
       problem.AddParameterBlock(poses.data(k), 4, MakeManifold(order).release());
@@ -681,6 +682,17 @@ TEST(EpipolarCost, ACalibrationFindsTheTruth) {
     EXPECT_LT(RotationError(truth.Q, found.R), 1e-9) << summary.BriefReport();
     EXPECT_LT((truth.s - found.t).norm(), 1e-8) << summary.BriefReport();
   }
+}
+
+// A residual and its derivatives must not overflow.
+TEST(EpipolarCost, SigmasOfNoMeaningAreRefused) {
+  Random random(5);
+  const Rig rig = MixedRig(&random);
+  const Match match = UnrelatedMatches(rig, 9, &random)[0];
+  for (const double sigma : {1e-308, 1e-13, 1e13, 1e308}) {
+    EXPECT_EQ(MakeCost(kForms[0], rig, match, sigma, QuaternionOrder::kCeres), nullptr) << sigma;
+  }
+  EXPECT_NE(MakeCost(kForms[0], rig, match, 1e-12, QuaternionOrder::kCeres), nullptr);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "rigel/core/epipolar.h"
 #include "rigel/core/rays.h"
+#include "rigel/test/core/random_vector.h"
 #include "rigel/test/refine/jet_geometry.h"
 #include "rigel/test/refine/refine_scene.h"
 
@@ -78,7 +79,7 @@ Pose RandomPose(int number, Random* random) {
                                          : random->Uniform(0.0, kPi);
   Pose pose;
   pose.R = ExpSO3(angle * random->UnitVector3());
-  pose.t = random->Uniform(0.2, 3.0) * random->UnitVector3();
+  pose.t = RandomVector3(0.2, 3.0, random);
   return pose;
 }
 

@@ -25,8 +25,8 @@ FramePair PairWithNoisyInterMatches(int index, int num_matches, double ratio) {
   Random random = Random::Stream(23, index);
   for (Match& match : pair.matches) {
     const double sigma = kNoisePx * (match.IsIntra() ? 1.0 : ratio);
-    match.pixel1 += sigma * Eigen::Vector2d(random.Normal(), random.Normal());
-    match.pixel2 += sigma * Eigen::Vector2d(random.Normal(), random.Normal());
+    match.pixel1 += sigma * Eigen::Vector2d{random.Normal(), random.Normal()};
+    match.pixel2 += sigma * Eigen::Vector2d{random.Normal(), random.Normal()};
   }
   pair.noise_px.reset();
   return pair;

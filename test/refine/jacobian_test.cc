@@ -6,6 +6,7 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
+#include "rigel/test/core/random_vector.h"
 #include "rigel/test/refine/jacobian_twins.h"
 
 namespace rigel {
@@ -124,11 +125,11 @@ TEST(Jacobian, PriorResidualsMatchAutomaticDifferentiation) {
         MotionPrior prior = FullPrior(&random);
         if (!distance) prior.distance_sigma = 0.0;
         Pose start, pose;
-        start.R = ExpSO3(Angle((i / 3) % 3, &random) * random.UnitVector3());
-        start.t = random.Uniform(0.2, 3.0) * random.UnitVector3();
+        start.R = RandomRotation((i / 3) % 3, &random);
+        start.t = RandomVector3(0.2, 3.0, &random);
         if (i % 10 == 9) start.t.setZero();
-        pose.R = ExpSO3(Angle(i % 3, &random) * random.UnitVector3());
-        pose.t = random.Uniform(0.2, 3.0) * random.UnitVector3();
+        pose.R = RandomRotation(i % 3, &random);
+        pose.t = RandomVector3(0.2, 3.0, &random);
         const PriorResiduals residuals(prior, kind, start);
         PriorResiduals::Residuals r;
         PriorResiduals::Jacobian J;

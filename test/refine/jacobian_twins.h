@@ -22,6 +22,7 @@
 #include "rigel/refine/motion_parameterization.h"
 #include "rigel/refine/prior_residuals.h"
 #include "rigel/refine/reprojection_cost.h"
+#include "rigel/test/core/random_vector.h"
 #include "rigel/test/refine/jet_geometry.h"
 #include "rigel/test/refine/refine_scene.h"
 
@@ -338,6 +339,11 @@ inline double Angle(int regime, Random* random) {
   return regime == 0 ? near : regime == 1 ? kPi - near : random->Uniform(0.1, 3.0);
 }
 
+inline Eigen::Matrix3d RandomRotation(int regime, Random* random) {
+  const double angle = Angle(regime, random);
+  return ExpSO3(angle * random->UnitVector3());
+}
+
 struct Point {
   int number = 0;
   Rig rig;
@@ -353,8 +359,8 @@ inline Point MakePoint(int number) {
   p.rig = MixedRig(&random);
   p.matches = UnrelatedMatches(p.rig, 9, &random);
   Pose exact;
-  exact.R = ExpSO3(Angle(number % 3, &random) * random.UnitVector3());
-  exact.t = random.Uniform(0.3, 3.0) * random.UnitVector3();
+  exact.R = RandomRotation(number % 3, &random);
+  exact.t = RandomVector3(0.3, 3.0, &random);
   p.start.pose = StartNear(exact, 3.0, 0.1, &random);
   if (number % 3 != 2) p.start.pose.R = exact.R;
   MotionPrior prior;
@@ -381,7 +387,7 @@ inline Point MakePoint(int number) {
     reference.ray2.x = (exact * X1 - reference.ray2.s).normalized();
     // Of a parallax and a height that determine its depths.
     const double parallax = (p.start.pose.R * reference.ray1.x).cross(reference.ray2.x).norm();
-    if (parallax > 0.1 && std::abs(p.start.n1.dot(reference.ray1.x)) > 0.1) return p;
+    if (parallax > 0.15 && std::abs(p.start.n1.dot(reference.ray1.x)) > 0.15) return p;
   }
   ADD_FAILURE() << "no reference";
   return p;
@@ -403,7 +409,8 @@ inline Parameters RandomParameters(const Form& form, int number, bool any_scale,
     n = 1;
   }
   for (int k = n; k < form.size; ++k) {
-    x[k] = (random->Index(2) == 0 ? 1.0 : -1.0) * random->Uniform(0.01, 0.8);
+    const double size = random->Uniform(0.01, 0.8);
+    x[k] = random->Index(2) == 0 ? size : -size;
   }
   const double bend = Angle((number / 9) % 3, random);
   switch (form.translation) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "rigel/test/core/random_vector.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -12,8 +13,8 @@ namespace {
 
 Pose RandomPose(Random* random) {
   Pose pose;
-  pose.R = ExpSO3(random->Uniform(0.0, 3.1) * random->UnitVector3());
-  pose.t = random->Uniform(0.1, 3.0) * random->UnitVector3();
+  pose.R = ExpSO3(RandomVector3(0.0, 3.1, random));
+  pose.t = RandomVector3(0.1, 3.0, random);
   return pose;
 }
 

@@ -17,6 +17,7 @@
 #include "rigel/core/random.h"
 #include "rigel/problems/synthetic.h"
 #include "rigel/refine/refine.h"
+#include "rigel/test/core/random_vector.h"
 
 namespace rigel {
 
@@ -87,8 +88,8 @@ inline Rig MixedRig(Random* random) {
                          random->Uniform(200, 280),
                          640,
                          480};
-    camera.Q = ExpSO3(random->Uniform(0.0, 3.0) * random->UnitVector3());
-    camera.s = random->Uniform(0.1, 1.5) * random->UnitVector3();
+    camera.Q = ExpSO3(RandomVector3(0.0, 3.0, random));
+    camera.s = RandomVector3(0.1, 1.5, random);
     rig.cameras.push_back(camera);
   }
   return rig;

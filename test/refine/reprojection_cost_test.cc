@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "rigel/refine/refine.h"
+#include "rigel/test/core/random_vector.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -26,7 +27,7 @@ Point RandomPoint(uint64_t seed) {
   for (int attempt = 0; attempt < 1000; ++attempt) {
     const double angle = seed % 3 == 0 ? 1e-9 : seed % 3 == 1 ? 3.14159 : random.Uniform(0.0, 3.0);
     p.pose.R = ExpSO3(angle * random.UnitVector3());
-    p.pose.t = random.Uniform(0.1, 2.0) * random.UnitVector3();
+    p.pose.t = RandomVector3(0.1, 2.0, &random);
     p.match = UnrelatedMatches(p.rig, 9, &random)[random.Index(9)];
     p.point = {random.Uniform(-2, 2), random.Uniform(-2, 2), random.Uniform(0.02, 0.5)};
     const RigCamera& c1 = p.rig.cameras[p.match.camera1];

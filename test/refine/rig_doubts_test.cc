@@ -123,5 +123,44 @@ TEST(RigDoubts, OneWayStereoIsNotCalledStandingStill) {
   EXPECT_LT((Eigen::Vector3d(b[0], b[1], b[2]) - truth).norm(), 0.05);
 }
 
+// The rig is right, the prior is not.
+TEST(RigDoubts, AWrongPriorIsNotBlamedOnTheRig) {
+  int doubtful = 0;
+  for (int index = 0; index < 10; ++index) {
+    SceneOptions scene;
+    scene.ring = true;
+    scene.num_cameras = 8;
+    scene.num_matches = 400;
+    scene.rotation_deg = 20.0;
+    scene.rotation_axis = RotationAxisPattern::kRandom;
+    FramePair pair = ScenePair(scene, index);
+    pair.prior.gravity2 = pair.prior.gravity1;  // as --prior=body says
+    EstimateOptions options;
+    options.solver = "4pt";
+    const MotionEstimate e = EstimateMotion(options, pair);
+    if (!e.HasMotion()) continue;
+    EXPECT_THAT(e.rig_doubts, IsEmpty());
+    doubtful += e.doubtful ? 1 : 0;
+  }
+  EXPECT_GT(doubtful, 0);
+}
+
+// No match connects them: that each fits badly by itself is what shows.
+TEST(RigDoubts, SwappedCamerasWithoutMatchesBetweenThemAreNamed) {
+  SceneOptions scene;
+  scene.ring = true;
+  scene.num_cameras = 6;
+  scene.num_matches = 600;
+  scene.rotation_deg = 5.0;
+  FramePair pair = ScenePair(scene, 0);
+  std::swap(pair.rig.cameras[2], pair.rig.cameras[3]);
+  const MotionEstimate e = EstimateMotion(EstimateOptions(), pair);
+  ASSERT_THAT(e.rig_doubts, SizeIs(3));
+  EXPECT_THAT(e.rig_doubts[0].message, AllOf(StartsWith("camera 2: "), HasSubstr("is it swapped")));
+  EXPECT_THAT(e.rig_doubts[1].message, StartsWith("camera 3: "));
+  EXPECT_EQ(e.rig_doubts[2].kind, RigDoubtKind::kSwapped);
+  EXPECT_THAT(e.rig_doubts[2].message, StartsWith("with cameras 2 and 3 swapped "));
+}
+
 }  // namespace
 }  // namespace rigel

@@ -193,5 +193,25 @@ TEST(SolverChoice, TheSolversShareOneBudget) {
   }
 }
 
+// A motion that contradicts its prior and is found without one as well is that of the latter.
+TEST(SolverChoice, AConfirmedMotionIsNotDoubtedForItsPrior) {
+  int confirmed = 0;
+  for (int index = 0; index < 20; ++index) {
+    SceneOptions scene;
+    scene.num_matches = 400;
+    scene.rotation_deg = 5.0;
+    scene.rotation_axis = RotationAxisPattern::kRandom;
+    FramePair pair = ScenePair(scene, index);
+    pair.prior.gravity1 = pair.prior.gravity2 = Eigen::Vector3d::UnitY();
+    pair.prior.axis = pair.prior.normal = Eigen::Vector3d::UnitY();
+    const MotionEstimate e = EstimateMotion(EstimateOptions(), pair);
+    ASSERT_EQ(e.status, EstimateStatus::kSuccess) << e.message;
+    EXPECT_THAT(e.doubt, testing::Not(HasSubstr("away from the prior"))) << e.solver;
+    for (const SolverTrial& trial : e.trials) EXPECT_NE(trial.note, "") << trial.solver;
+    confirmed += e.solver == "5pt+1" ? 1 : 0;
+  }
+  EXPECT_GE(confirmed, 10);
+}
+
 }  // namespace
 }  // namespace rigel

@@ -34,7 +34,7 @@ FramePair HostilePair(int num_matches, int num_cameras = 2) {
     pair.rig.cameras.push_back(camera);
   }
   const auto pixel = [&] {
-    return Eigen::Vector2d(random.Uniform(0.0, 640.0), random.Uniform(0.0, 480.0));
+    return Eigen::Vector2d{random.Uniform(0.0, 640.0), random.Uniform(0.0, 480.0)};
   };
   for (int k = 0; k < num_matches; ++k) {
     Match match;

@@ -8,6 +8,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/core/pose.h"
+#include "rigel/core/rig_centre.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/test/tools/tools_test.h"
 
@@ -374,6 +375,29 @@ TEST_F(CalibratePriorTest, WrongFlagsAreUsageErrors) {
   EXPECT_EXIT_CODE(help, 0);
   EXPECT_THAT(help.out, AllOf(HasSubstr("--lines=normal"), HasSubstr("--in_place")));
   EXPECT_LE(Width(help.out), 100u);
+}
+
+// A plane that a point moves in is that of all its body: a lever of 30 m must not blur it.
+TEST_F(CalibratePriorTest, TheBodysOriginMayBeAnywhere) {
+  const std::string matches = Misaligned("in");
+  const auto calibrated = [&] {
+    const Outcome run = RunTool("calibrate_prior", {"--matches=" + matches, "--json=-"});
+    EXPECT_EXIT_CODE(run, 0);
+    return ParseReport(run.out)["plane"];
+  };
+  const Json near = calibrated();
+  const Eigen::Vector3d origin(10.0, 5.0, -30.0);
+  for (FramePair& pair : Read(matches)) {
+    pair.rig = WithOrigin(pair.rig, origin);
+    if (pair.truth) pair.truth = MotionOfPoint(*pair.truth, origin);
+    std::string error;
+    ASSERT_TRUE(WriteMatchFile(pair.name, pair, &error)) << error;
+  }
+  const Json far = calibrated();
+  EXPECT_EQ(far["level"], near["level"]);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(far["normal"][k].get<double>(), near["normal"][k].get<double>(), 1e-6);
+  }
 }
 
 }  // namespace

@@ -345,8 +345,7 @@ TEST_F(CompareTest, DegenerateFilesCountAsFailures) {
       RunTool("compare", {"--matches=" + matches, "--solvers=4pt-axis", "--json=-"});
   EXPECT_EXIT_CODE(run, 0);
   EXPECT_THAT(Lines(run.err),
-              UnorderedElementsAre(HasSubstr("none.matches: "), HasSubstr("same.matches: "),
-                                   HasSubstr("three.matches: ")));
+              UnorderedElementsAre(HasSubstr("(2 files alike"), HasSubstr("same.matches: ")));
   const Json entry = ParseReport(run.out)["results"][0];
   EXPECT_EQ(entry["pairs"], 6);
   EXPECT_EQ(entry["failures"], 3);
@@ -466,6 +465,28 @@ TEST_F(CompareTest, NoSolverFitsFilesWithoutPriors) {
   const Outcome run = RunTool("compare", {"--matches=" + matches, "--refine=prior"});
   EXPECT_EXIT_CODE(run, 1);
   EXPECT_THAT(run.err, HasSubstr("try --prior=body"));
+}
+
+// By name: what auto would doubt is told, and is in the report of the pairs.
+TEST_F(CompareTest, AWrongPriorOfANamedSolverIsTold) {
+  const std::string matches =
+      Simulate("in", {"--pairs=4", "--rotation_deg=12", "--num_matches=400"});
+  const Outcome right = RunTool("compare", {"--matches=" + matches, "--solvers=4pt"});
+  EXPECT_THAT(right.err, Not(HasSubstr("doubtful")));
+  const Outcome run = RunTool(
+      "compare", {"--matches=" + matches, "--solvers=4pt,auto", "--prior=truth",
+                  "--prior_noise_deg=8", "--prior_noise_axis=random", "--per_pair", "--json=-"});
+  EXPECT_THAT(Lines(run.err), testing::Contains(testing::AllOf(HasSubstr("doubtful: 4pt: "),
+                                                               HasSubstr("is the prior right"))));
+  const Json report = ParseReport(run.out);
+  int doubtful = 0;
+  for (const Json& pair : report["pair_results"]) {
+    const Json& result = pair["solvers"]["4pt"];
+    if (!result.contains("doubtful")) continue;
+    ++doubtful;
+    EXPECT_NE(result["reason"], "");
+  }
+  EXPECT_GT(doubtful, 0);
 }
 
 }  // namespace

@@ -208,7 +208,7 @@ TEST_F(EstimateTest, SwappedCamerasAreToldOnceAndCountedInTheJson) {
   const Outcome run = RunTool("estimate", {"--matches=" + matches, "--json=-"});
   EXPECT_EXIT_CODE(run, 0);
   EXPECT_THAT(run.err, HasSubstr("with cameras 0 and 1 swapped 1"));
-  EXPECT_THAT(run.err, HasSubstr("(and so in 1 more)"));
+  EXPECT_THAT(run.err, HasSubstr("(2 files alike)"));
   const Json report = ParseReport(run.out);
   for (const Json& pair : report["pairs"]) {
     int rows = 0, inliers = 0;
@@ -253,8 +253,8 @@ TEST_F(EstimateTest, TooFewMatchesAreAnAnswer) {
                 Matches({"0 100 100 0 110 100 0", "1 200 90 1 210 91 0", "0 50 60 0 55 60 0"}));
   const Outcome run = RunTool("estimate", {"--matches=" + Path("in"), "--solver=4pt-axis"});
   EXPECT_EXIT_CODE(run, 1);
-  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("none.matches: 0 matches, 4pt-axis needs 4"),
-                                          HasSubstr("three.matches: 3 matches, 4pt-axis needs 4"),
+  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("none.matches: 0 matches, 4pt-axis needs 4 (2 "
+                                                    "files alike but for the numbers)"),
                                           "no pair has a motion"));
   EXPECT_THAT(run.out, HasSubstr("too few matches"));
   const Json report = ParseReport(RunTool("estimate", {"--matches=" + Path("in"), "--json=-"}).out);
@@ -471,6 +471,29 @@ TEST_F(EstimateTest, ExactPriorIsKeptExactly) {
     EXPECT_NEAR(planar["q_wxyz"][3], 0, 1e-12) << form;
     EXPECT_NEAR(planar["t"][1], 0, 1e-12) << form;
   }
+}
+
+// An offset of the shell: `>> input`.
+TEST_F(EstimateTest, StdoutIsNoInput) {
+  const std::string matches = Simulate("in", {"--pairs=1"}) + "/000000.matches";
+  const std::string before = ReadText(matches);
+  const std::string program = std::string(RIGEL_PROGRAMS) + "/rigel_estimate";
+  const std::string command =
+      program + " --matches=" + matches + " >>" + matches + " 2>" + Path("err");
+  EXPECT_NE(std::system(command.c_str()), 0);
+  EXPECT_THAT(ReadText(Path("err")), HasSubstr("stdout: is the input " + matches));
+  EXPECT_EQ(ReadText(matches), before);
+}
+
+// Not a line for each count of inliers, and what is likely wrong.
+TEST_F(EstimateTest, PairsWithoutAConsensusAreOneLine) {
+  const std::string matches = Simulate("in", {"--pairs=6", "--outlier_share=1"});
+  const Outcome run =
+      RunTool("estimate", {"--matches=" + matches, "--solver=4pt", "--max_iterations=200"});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(Lines(run.err), testing::Contains(testing::AllOf(
+                                  HasSubstr("no more than chance allows; is the prior right?"),
+                                  HasSubstr("(6 files alike"))));
 }
 
 }  // namespace

@@ -341,6 +341,11 @@ TEST_F(PlotTest, SaysWhatItCannotDraw) {
     const Outcome run = RunTool("plot.py", {"--estimate=" + Path(name), output});
     EXPECT_EXIT_CODE(run, 1);
     EXPECT_THAT(run.err, HasSubstr(Path(name) + ":1: "));
+    // The page may not take the place of what it shows.
+    const Outcome page =
+        RunTool("plot.py", {"--estimate=" + Path(name), "--html=" + Path(name), output});
+    EXPECT_EXIT_CODE(page, 1);
+    EXPECT_THAT(page.err, HasSubstr("is the input " + Path(name)));
   }
   EXPECT_EXIT_CODE(RunTool("plot.py", {output}), 2);
   EXPECT_EXIT_CODE(RunTool("plot.py", {"--help"}), 0);
@@ -490,7 +495,7 @@ TEST_F(PlotTest, LeavesOutForeignFilesOfADirectory) {
 TEST_F(PlotTest, WithoutMatplotlibItSaysSo) {
   HideMatplotlib();
   const Outcome run = RunTool("plot.py", {"x.json"});
-  EXPECT_EXIT_CODE(run, 3);
+  EXPECT_EXIT_CODE(run, 4);
   EXPECT_THAT(run.err, HasSubstr("apt install python3-matplotlib"));
   EXPECT_EXIT_CODE(RunTool("plot.py", {"--help"}), 0);
 }

@@ -205,7 +205,7 @@ TEST_F(OutputsTest, AFlagFileNamesNoOther) {
       {{"--flagfile=" + Path("environment")}, "line 1: --fromenv is not taken"},
       {{"--fromenv=solver,flagfile"}, "--fromenv=flagfile: a flag file is only taken"},
       {{"--flagfile=" + Path("large")}, "larger than 1 MiB"},
-      {{"--flagfile=/dev/zero"}, "larger than 1 MiB"},
+      {{"--flagfile=/dev/zero"}, "/dev/zero: no regular file, expected one"},
       {{"--flagfile=" + Path("none")}, Path("none") + ": cannot be opened"},
   };
   for (const auto& [args, what] : wrong) {
@@ -238,6 +238,16 @@ TEST_F(OutputsTest, NestedReportsAreRefusedShortly) {
   const Outcome run = RunTool("compare", {"--merge=" + Path("deep.json")});
   EXPECT_EXIT_CODE(run, 1);
   EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("an array, expected an integer")));
+}
+
+TEST_F(OutputsTest, AFlagFileIsAnInput) {
+  const std::string flags = Path("flags");
+  const std::string text = "--matches=" + file_ + "\n--json=" + flags + "\n";
+  WriteText(flags, text);
+  const Outcome run = RunTool("estimate", {"--flagfile=" + flags});
+  EXPECT_EXIT_CODE(run, 2);
+  EXPECT_THAT(run.err, HasSubstr("is the input " + flags));
+  EXPECT_EQ(ReadText(flags), text);
 }
 
 }  // namespace

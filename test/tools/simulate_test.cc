@@ -210,6 +210,10 @@ TEST_F(SimulateTest, MotionOutOfViewFailsWithAMessage) {
       RunTool("simulate", {"--output=" + Path("out"), "--pairs=1", "--rotation_deg=180"});
   EXPECT_EXIT_CODE(run, 1);
   EXPECT_THAT(run.err, HasSubstr("in the view of camera"));
+  const Outcome apart = RunTool(
+      "simulate", {"--output=" + Path("out"), "--ring", "--num_cameras=4", "--inter_share=0.3"});
+  EXPECT_EXIT_CODE(apart, 1);
+  EXPECT_THAT(apart.err, HasSubstr("neighbours on a ring of fewer than 5 see nothing in common"));
 }
 
 }  // namespace
