@@ -64,24 +64,6 @@ Json OptionsJson(const ExperimentPlan& plan) {
   return json;
 }
 
-std::string Ordinal(int n) {
-  const int last = n % 100 / 10 == 1 ? 0 : n % 10;
-  return std::to_string(n) + (last == 1 ? "st" : last == 2 ? "nd" : last == 3 ? "rd" : "th");
-}
-
-// Of what OptionsJson() wrote.
-std::string SizeText(const Json& options) {
-  std::string text;
-  if (options.contains("every")) {
-    const int every = JsonInteger(options.at("every"), 1);
-    text = every == 1 ? "every motion" : "every " + Ordinal(every) + " motion";
-  } else {
-    text = std::to_string(JsonInteger(options.at("pairs"), 1)) + " pairs a point, " +
-           (options.at("quick").get<bool>() ? "the coarse grid of --quick" : "the full grid");
-  }
-  return text + ", seed " + std::to_string(options.at("seed").get<uint64_t>());
-}
-
 const ExperimentRow* Find(const std::vector<ExperimentRow>& rows, const ExperimentPoint& point,
                           const std::string& solver, const char* loop) {
   for (const ExperimentRow& row : rows) {
@@ -220,43 +202,6 @@ std::string ExperimentJson(const ExperimentPlan& plan, const std::vector<Experim
     text += (k > 0 ? ",\n  " : "\n  ") + JsonText(RowJson(rows[k]), -1);
   }
   return text + "\n ]\n}\n";
-}
-
-bool ParseExperimentJson(const std::string& text, StoredExperiment* stored, std::string* error) {
-  try {
-    const Json json = ParseJson(text);
-    if (json.at("format") != "rigel-experiment 1") {
-      *error = "its format is not rigel-experiment 1";
-      return false;
-    }
-    StoredExperiment parsed;
-    parsed.name = json.at("experiment").get<std::string>();
-    if (FindExperiment(parsed.name) == nullptr) {
-      *error = "there is no experiment of its name";
-      return false;
-    }
-    parsed.size = SizeText(json.at("options"));
-    for (const Json& entry : json.at("results")) {
-      ExperimentPoint point;
-      point.motion = entry.at("motion").get<std::string>();
-      if (entry.contains("x")) {
-        point.x = entry.at("x").get<double>();
-      } else {
-        point.sequence = entry.at("sequence").get<std::string>();
-      }
-      // The claims take x for granted where the experiment has one.
-      if (point.x.has_value() == FindExperiment(parsed.name)->values.empty()) {
-        *error = "a result has x where it should not, or none where it should";
-        return false;
-      }
-      parsed.rows.push_back({point, entry.at("loop").get<std::string>(), ParseSummary(entry)});
-    }
-    *stored = std::move(parsed);
-    return true;
-  } catch (const std::exception& e) {
-    *error = JsonMessage(e);
-    return false;
-  }
 }
 
 std::string ExperimentCsv(const ExperimentPlan& plan, const std::vector<ExperimentRow>& rows) {

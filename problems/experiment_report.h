@@ -18,16 +18,6 @@ std::string ExperimentTable(const ExperimentPlan& plan, const std::vector<Experi
 
 std::string ExperimentJson(const ExperimentPlan& plan, const std::vector<ExperimentRow>& rows);
 
-// What ExperimentJson() wrote, by whichever run.
-struct StoredExperiment {
-  std::string name;
-  std::string size;  // "60 pairs a point, full grid, seed 1"
-  std::vector<ExperimentRow> rows;
-};
-
-// False with a message if the text is not of that form or the experiment is not in the catalogue.
-bool ParseExperimentJson(const std::string& text, StoredExperiment* stored, std::string* error);
-
 // One line a point, solver and loop.
 std::string ExperimentCsv(const ExperimentPlan& plan, const std::vector<ExperimentRow>& rows);
 

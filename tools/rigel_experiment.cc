@@ -11,13 +11,12 @@
 #include <gflags/gflags.h>
 
 #include "rigel/problems/experiment.h"
-#include "rigel/problems/experiment_claims.h"
 #include "rigel/problems/experiment_report.h"
 #include "rigel/problems/experiment_store.h"
 #include "rigel/problems/match_file.h"
 #include "rigel/problems/run_lock.h"
 #include "rigel/problems/whole_file.h"
-#include "rigel/tools/plot_script.h"
+#include "rigel/tools/python_script.h"
 #include "rigel/tools/tool.h"
 
 DEFINE_string(name, "", "names of experiments, comma separated, or all; --list shows them");
@@ -52,9 +51,9 @@ constexpr char kUsage[] =
     "the same frame pairs, in the paper's RANSAC (the largest inlier count wins) and in Rigel's,\n"
     "then the refinement. Per experiment NAME the directory gets NAME.json, NAME.csv, NAME.txt\n"
     "(table) and figures/NAME*.png and .svg; and claims.md, claims.json: each claim of the paper\n"
-    "with a verdict. NAME.points.jsonl keeps finished points: after an interruption the same\n"
-    "command with --resume continues. One run at a time works in a directory.\n"
-    "docs/experiments.md has sizes and times.\n";
+    "with a verdict, by rigel_claims.py (python3). NAME.points.jsonl keeps finished points: after\n"
+    "an interruption the same command with --resume continues. One run at a time works in a\n"
+    "directory. docs/experiments.md has sizes and times.\n";
 
 int PrintList() {
   for (const ExperimentSpec& spec : ExperimentCatalogue()) {
@@ -155,94 +154,17 @@ bool RunPoints(const std::vector<ExperimentPlan>& plans, std::vector<ExperimentS
   return true;
 }
 
-// "verdict  claim", wrapped to 100 columns.
-void PrintClaims(const std::vector<Claim>& claims) {
-  constexpr size_t kIndent = 15, kWidth = 100;
-  for (const Claim& claim : claims) {
-    std::string line = VerdictName(claim.verdict);
-    line.resize(kIndent, ' ');
-    std::string word;
-    for (const char c : claim.experiment + ": " + claim.text + " ") {
-      word += c;
-      if (c != ' ') continue;
-      if (line.size() + word.size() > kWidth + 1) {
-        std::cout << line.substr(0, line.find_last_not_of(' ') + 1) << "\n";
-        line.assign(kIndent, ' ');
-      }
-      line += word;
-      word.clear();
-    }
-    std::cout << line.substr(0, line.find_last_not_of(' ') + 1) << "\n";
-  }
-}
-
-// What claims.md says of the results: those of one size together.
-std::string AboutResults(const std::vector<StoredExperiment>& all) {
-  std::vector<std::pair<std::string, std::string>> names_by_size;
-  for (const StoredExperiment& stored : all) {
-    const auto same = std::find_if(names_by_size.begin(), names_by_size.end(),
-                                   [&](const auto& entry) { return entry.first == stored.size; });
-    if (same == names_by_size.end()) {
-      names_by_size.emplace_back(stored.size, stored.name);
-    } else {
-      same->second += ", " + stored.name;
-    }
-  }
-  std::string sizes;
-  for (const auto& [size, names] : names_by_size) {
-    sizes += (sizes.empty() ? "" : "; ") + names + ": " + size;
-  }
-  return "Each claim of the paper's experiments, and what Rigel adds, held against results of "
-         "`rigel_experiment` (" +
-         sizes +
-         "). The paper's claims are of the raw motions where the largest inlier count wins; errors "
-         "are medians in degrees, times are of the machine that ran it. Confirmed: in all cases "
-         "unless the claim says otherwise; partly: in three of four; too few pairs: chance could "
-         "decide. \"Best\" and \"beat\" are taken to the last digit, and medians of few pairs "
-         "differ "
-         "by chance.";
-}
-
-// Results of this and of earlier runs in --output, in the order of the catalogue.
-std::vector<StoredExperiment> AllResults(
-    const std::vector<std::pair<std::string, std::string>>& json_by_name) {
-  std::vector<StoredExperiment> all;
-  for (const ExperimentSpec& spec : ExperimentCatalogue()) {
-    const std::string path = OutputPath(std::string(spec.name) + ".json");
-    std::string text, error;
-    const auto own = std::find_if(json_by_name.begin(), json_by_name.end(),
-                                  [&](const auto& entry) { return entry.first == spec.name; });
-    std::error_code code;
-    if (own != json_by_name.end()) {
-      text = own->second;
-    } else if (!fs::exists(path, code) || !ReadInput(path, &text)) {
-      continue;
-    }
-    StoredExperiment stored;
-    if (!ParseExperimentJson(text, &stored, &error) || stored.name != spec.name) {
-      std::cerr << PrintablePath(path)
-                << ": not among the claims: " << (error.empty() ? "of another experiment" : error)
-                << "\n";
-      continue;
-    }
-    all.push_back(std::move(stored));
-  }
-  return all;
-}
-
 // Tables to stdout, all else to files.
 bool WriteResults(const std::vector<ExperimentPlan>& plans,
                   const std::vector<ExperimentStore>& stores) {
-  std::vector<std::pair<std::string, std::string>> json_by_name;
   bool ok = true;
   for (size_t k = 0; k < plans.size(); ++k) {
     const std::string name = plans[k].spec->name;
     const std::vector<ExperimentRow> rows = stores[k].RowsInOrder(plans[k]);
     const std::string table = ExperimentTable(plans[k], rows);
     std::cout << table << "\n";
-    json_by_name.emplace_back(name, ExperimentJson(plans[k], rows));
     const std::pair<std::string, std::string> files[] = {
-        {name + ".json", json_by_name.back().second},
+        {name + ".json", ExperimentJson(plans[k], rows)},
         {name + ".csv", ExperimentCsv(plans[k], rows)},
         {name + ".txt", table}};
     for (const auto& [file, text] : files) {
@@ -250,20 +172,24 @@ bool WriteResults(const std::vector<ExperimentPlan>& plans,
       if (!WriteWholeFile(OutputPath(file), text, &error)) ok = Failed(error);
     }
   }
-  const std::vector<StoredExperiment> all = AllResults(json_by_name);
-  ExperimentResults results;
-  for (const StoredExperiment& stored : all) results[stored.name] = stored.rows;
-  std::vector<Claim> claims = EvaluateClaims(results);
-  claims.erase(std::remove_if(claims.begin(), claims.end(),
-                              [&](const Claim& c) { return results.count(c.experiment) == 0; }),
-               claims.end());
-  PrintClaims(claims);
-  std::string error;
-  if (!WriteWholeFile(OutputPath("claims.md"), ClaimsMarkdown(AboutResults(all), claims), &error) ||
-      !WriteWholeFile(OutputPath("claims.json"), ClaimsJson(claims), &error)) {
-    ok = Failed(error);
-  }
   return FlushStdout() && ok;
+}
+
+// Else than kDone with a message on stderr that says how to go on.
+ScriptOutcome RunOnResults(const std::string& name, const std::vector<std::string>& arguments,
+                           const std::string& what) {
+  std::string error;
+  const ScriptOutcome outcome = RunScript(name, arguments, &error);
+  if (outcome == ScriptOutcome::kDone) return outcome;
+  std::cerr << "no " << what << ": " << error << "\nThe results are in "
+            << PrintablePath(FLAGS_output) << "; once that is mended, get the " << what
+            << " with\n  " << ScriptCommand(name, arguments) << "\n";
+  return outcome;
+}
+
+// Verdicts to stdout, claims.md and claims.json: of this and of earlier runs in --output.
+bool JudgeClaims() {
+  return RunOnResults("rigel_claims.py", {"--", FLAGS_output}, "claims") == ScriptOutcome::kDone;
 }
 
 // That they cannot be drawn fails nothing but --html.
@@ -271,12 +197,9 @@ bool DrawFigures() {
   if (!FLAGS_figures && FLAGS_html.empty()) return true;
   std::vector<std::string> arguments = {FLAGS_output, "--output=" + OutputPath("figures")};
   if (!FLAGS_html.empty()) arguments.push_back("--html=" + FLAGS_html);
-  std::string error;
-  const PlotOutcome outcome = RunPlotScript(arguments, &error);
-  if (outcome == PlotOutcome::kDone) return true;
-  std::cerr << error << "\nThe results are in " << PrintablePath(FLAGS_output)
-            << "; once that is mended, draw the figures with\n  " << PlotCommand(arguments) << "\n";
-  return outcome == PlotOutcome::kUnavailable && FLAGS_html.empty();
+  const ScriptOutcome outcome = RunOnResults("rigel_plot.py", arguments, "figures");
+  return outcome == ScriptOutcome::kDone ||
+         (outcome == ScriptOutcome::kUnavailable && FLAGS_html.empty());
 }
 
 int Run() {
@@ -347,6 +270,7 @@ int Run() {
   if (!PrepareOutput(plans, &lock) || !HtmlWritable() || !RunPoints(plans, &stores))
     return kExitFailed;
   bool ok = WriteResults(plans, stores);
+  ok = JudgeClaims() && ok;
   ok = DrawFigures() && ok;
   return ok ? kExitDone : kExitFailed;
 }

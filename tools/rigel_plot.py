@@ -14,24 +14,20 @@ Exit code: 0 done, 1 failed, 2 wrong flag, 4 matplotlib is missing.
 import argparse
 import atexit
 import base64
-import errno
-import fcntl
 import html
 import io
-import json
 import math
 import os
 import re
 import shutil
-import stat
 import sys
 import tempfile
-import unicodedata
 import zlib
 
+sys.dont_write_bytecode = True  # the folder of the programs stays as it was installed
+from rigel_files import Bad, printable, read_json, write_whole
+
 NO_MATPLOTLIB = 4
-# Marks that turn the direction of writing, and the byte order mark.
-MISLEADING = "\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\ufeff"
 GUARD = "RIGEL_PLOT_SECOND_PYTHON"
 
 
@@ -102,22 +98,6 @@ LOOPS = {"paper": "largest inlier count, as the paper", "rigel": "Rigel's RANSAC
 # for the rotation, of two, sqrt(ln 2), for the direction. An anisotropic error's factor is lower.
 MEDIAN_OVER_RMS = {"rotation_deg": 0.8881, "translation_dir_deg": 0.8326}
 BOUND_LABEL = "Cramér-Rao bound (as a median)"
-
-
-class Bad(Exception):
-    """A message for the user."""
-
-
-def printable(text):
-    """Text for a terminal: what it would obey in hexadecimal, as Rigel's programs show it."""
-    kept = []
-    for character in text:
-        if unicodedata.category(character) in ("Cc", "Cs", "Zl", "Zp") or character in MISLEADING:
-            raw = character.encode("utf-8", "surrogateescape")
-            kept.append("".join(f"\\x{byte:02x}" for byte in raw))
-        else:
-            kept.append(character)
-    return "".join(kept)
 
 
 def style_of(solver):
@@ -586,62 +566,6 @@ def plot_trajectory(estimate_path, truth_path, down, forward):
     return [("trajectory", figure)]
 
 
-def open_temporary(place):
-    """A locked temporary file beside the place, and its path; what killed runs left is removed."""
-    names = [f"{place}.rigel-tmp{k}" for k in range(10)]
-    for name in names:
-        try:
-            with open(name, "rb") as file:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                if os.path.samestat(os.fstat(file.fileno()), os.lstat(name)):
-                    os.unlink(name)
-        except OSError:  # not there, or of a living run
-            pass
-    for name in names:
-        try:
-            file = open(name, "xb")
-        except FileExistsError:
-            continue
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:  # a file system without locks, or about to be removed by another run
-            pass
-        return file, name
-    raise OSError(errno.EEXIST, "other runs are writing it")
-
-
-def write_whole(path, data):
-    """As the programs write (rigel/problems/whole_file.h): a regular file is replaced by a whole
-    one with its mode and owner, all else is written to."""
-    place = os.path.realpath(path)
-    status = os.stat(path) if os.path.exists(path) else None
-    if status and sys.stdout and os.path.samestat(status, os.fstat(sys.stdout.fileno())):
-        sys.stdout.buffer.write(data)
-        sys.stdout.buffer.flush()
-        return
-    if status and not stat.S_ISREG(status.st_mode):
-        with open(path, "wb") as file:
-            file.write(data)
-        return
-    if status and not os.access(place, os.W_OK):
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), path)
-    file, temporary = open_temporary(place)
-    try:
-        with file:
-            if status:
-                own = os.fstat(file.fileno())
-                if (own.st_uid, own.st_gid) != (status.st_uid, status.st_gid):
-                    os.fchown(file.fileno(), status.st_uid, status.st_gid)
-                os.fchmod(file.fileno(), stat.S_IMODE(status.st_mode))
-            file.write(data)
-            file.flush()
-            os.replace(temporary, place)
-    except BaseException:
-        if os.path.exists(temporary):
-            os.unlink(temporary)
-        raise
-
-
 def save(figure, directory, name, dpi):
     """Writes both files; returns their paths, the SVG's last."""
     paths = [os.path.join(directory, f"{name}.{kind}") for kind in ("png", "svg")]
@@ -660,19 +584,6 @@ def save(figure, directory, name, dpi):
     write_whole(paths[0], small.getvalue())
     write_whole(paths[1], text.encode("utf-8"))
     return paths
-
-
-def read_json(path):
-    try:
-        with open(path, encoding="utf-8-sig") as file:
-            value = json.load(file)
-    except (OSError, ValueError) as error:
-        raise Bad(f"{path}: cannot be read: {error}") from error
-    except RecursionError as error:
-        raise Bad(f"{path}: cannot be read: nested too deeply") from error
-    if not isinstance(value, dict):
-        raise Bad(f"{path}: not a report of Rigel")
-    return value
 
 
 EXPERIMENT, REPORT, BENCHMARK, CLAIMS = FORMATS = (
@@ -722,7 +633,7 @@ pre {{ font-size: 12px; line-height: 1.25; overflow-x: auto; background: #f6f6f6
 
 def claims_html(report):
     lines = ["<h2>Claims</h2><table><tr><th>of</th><th>experiment</th><th>claim</th>"
-             "<th>verdict</th><th>figures</th><th>where not, and why</th></tr>"]
+             "<th>verdict</th><th>figures</th><th>where not</th></tr>"]
     for claim in report["claims"]:
         cells = [claim[k] for k in ("of", "experiment", "claim", "verdict", "figures", "where_not")]
         kind = claim["verdict"].replace(" ", "-")

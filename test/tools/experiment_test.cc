@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "rigel/problems/experiment.h"
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {
@@ -137,6 +138,69 @@ TEST_F(ExperimentTest, ClaimsAreOfAllResultsInTheDirectory) {
   ASSERT_EXIT_CODE(
       Experiment({"--name=inter-share", "--quick", "--pairs=2", "--no_times", out, "--resume"}), 0);
   EXPECT_EQ(ReadText(Path("a/claims.md")), claims);
+}
+
+// What the list of claims takes for granted of the experiments.
+TEST_F(ExperimentTest, TheClaimsAreOfTheCatalogue) {
+  const Json list = Json::parse(ReadText(std::string(RIGEL_PROGRAMS) + "/rigel_claims.json"));
+  EXPECT_EQ(list["experiments"].size(), ExperimentCatalogue().size());
+  for (const ExperimentSpec& spec : ExperimentCatalogue()) {
+    ASSERT_TRUE(list["experiments"].contains(spec.name)) << spec.name;
+    EXPECT_EQ(list["experiments"][spec.name].is_null(), spec.values.empty()) << spec.name;
+  }
+  for (const Json& claim : list["claims"]) {
+    const std::string name = claim.value("experiment", "pitch-noise");
+    const ExperimentSpec& spec = *FindExperiment(name);
+    const auto expect_solvers = [&](Json names) {
+      if (names.is_object()) names = names.begin().value();
+      if (names.is_number() || names == "all") return;
+      if (names.is_string() && list["groups"].contains(names)) names = list["groups"][names];
+      if (names.is_string()) names = Json::array({names});
+      for (const Json& solver : names) {
+        EXPECT_THAT(spec.solvers, testing::Contains(solver.get<std::string>())) << claim["claim"];
+      }
+    };
+    const auto expect_x = [&](double x) {
+      EXPECT_THAT(spec.values, testing::Contains(x)) << claim["claim"];
+      EXPECT_THAT(spec.quick_values, testing::Contains(x)) << claim["claim"];
+    };
+    for (const char* part : {"cases", "figures", "where_not"}) {
+      if (!claim.contains(part)) continue;
+      for (const Json& entry : claim[part]) {
+        for (const char* key : {"a", "b"}) {
+          if (entry.contains(key)) expect_solvers(entry[key]);
+          if (entry.contains(key) && entry[key].contains("same_at")) {
+            expect_x(entry[key]["same_at"].get<double>());
+          }
+        }
+        if (entry.contains("show")) {
+          for (const Json& shown : entry["show"]) expect_solvers(shown);
+        }
+        if (entry.contains("x") && entry["x"].contains("equal")) {
+          expect_x(entry["x"]["equal"].get<double>());
+        }
+        if (entry.contains("since")) expect_x(entry["since"].get<double>());
+        if (entry.contains("quantities") && entry["quantities"][0] == "iterations") {
+          EXPECT_EQ(entry["is"]["at_least"],
+                    ExperimentEstimate("17pt-li", kPaperLoop, 0.5).ransac.max_iterations);
+        }
+      }
+    }
+  }
+}
+
+TEST_F(ExperimentTest, WithoutPythonTheResultsStay) {
+  const std::string path = getenv("PATH");
+  setenv("PATH", Path("nothing").c_str(), 1);
+  const Outcome run = Experiment(kSmall + Args{"--output=" + Path("a")});
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, AllOf(HasSubstr("no claims: python3 cannot be run"),
+                             HasSubstr("rigel_claims.py -- " + Path("a"))));
+  EXPECT_TRUE(fs::exists(Path("a/outliers.json")));
+  EXPECT_FALSE(fs::exists(Path("a/claims.json")));
+  EXPECT_EXIT_CODE(RunTool("claims.py", {"--", Path("a")}), 0);
+  EXPECT_TRUE(fs::exists(Path("a/claims.json")));
 }
 
 TEST_F(ExperimentTest, AnUnwritablePageIsFoundBeforeTheRun) {

@@ -1,4 +1,4 @@
-#include "rigel/tools/plot_script.h"
+#include "rigel/tools/python_script.h"
 
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -15,15 +15,15 @@
 namespace rigel {
 namespace {
 
-// What the script exits with where matplotlib is missing.
-constexpr int kNoMatplotlib = 4;
+// What a script exits with where a module is missing; it says which.
+constexpr int kNoModule = 4;
 // As a shell has it.
 constexpr int kNoPython = 127;
 
-std::string ScriptPath() {
+std::string ScriptPath(const std::string& name) {
   std::error_code code;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", code);
-  return code ? "rigel_plot.py" : (program.parent_path() / "rigel_plot.py").string();
+  return code ? name : (program.parent_path() / name).string();
 }
 
 std::string Quoted(const std::string& argument) {
@@ -36,12 +36,13 @@ std::string Quoted(const std::string& argument) {
 
 }  // namespace
 
-PlotOutcome RunPlotScript(const std::vector<std::string>& arguments, std::string* error) {
-  const std::string script = ScriptPath();
+ScriptOutcome RunScript(const std::string& name, const std::vector<std::string>& arguments,
+                        std::string* error) {
+  const std::string script = ScriptPath(name);
   std::error_code code;
   if (!std::filesystem::exists(script, code)) {
-    *error = "no figures: " + PrintablePath(script) + " is not there";
-    return PlotOutcome::kUnavailable;
+    *error = PrintablePath(script) + " is not there";
+    return ScriptOutcome::kUnavailable;
   }
   std::vector<std::string> words = {"python3", script};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -52,7 +53,7 @@ PlotOutcome RunPlotScript(const std::vector<std::string>& arguments, std::string
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child == 0) {
-    // It ends with the program, even if that is killed: the next run draws the same files.
+    // It ends with the program, even if that is killed: the next run writes the same files.
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(kNoPython);
     std::signal(SIGPIPE, SIG_DFL);
@@ -61,27 +62,27 @@ PlotOutcome RunPlotScript(const std::vector<std::string>& arguments, std::string
     _exit(kNoPython);
   }
   if (child < 0) {
-    *error = std::string("no figures: no process for python3: ") + std::strerror(errno);
-    return PlotOutcome::kUnavailable;
+    *error = std::string("no process for python3: ") + std::strerror(errno);
+    return ScriptOutcome::kUnavailable;
   }
   int status = -1;  // no exit of the child, should waitpid() fail
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return PlotOutcome::kDone;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == kNoMatplotlib) {
-    *error = "no figures: python3 has no matplotlib (Debian: apt install python3-matplotlib)";
-    return PlotOutcome::kUnavailable;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return ScriptOutcome::kDone;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kNoModule) {
+    *error = "python3 lacks a module of " + PrintablePath(script);
+    return ScriptOutcome::kUnavailable;
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == kNoPython) {
-    *error = "no figures: python3 cannot be run";
-    return PlotOutcome::kUnavailable;
+    *error = "python3 cannot be run";
+    return ScriptOutcome::kUnavailable;
   }
-  *error = "no figures: " + PrintablePath(script) + " failed";
-  return PlotOutcome::kFailed;
+  *error = PrintablePath(script) + " failed";
+  return ScriptOutcome::kFailed;
 }
 
-std::string PlotCommand(const std::vector<std::string>& arguments) {
-  std::string command = "python3 " + Quoted(ScriptPath());
+std::string ScriptCommand(const std::string& name, const std::vector<std::string>& arguments) {
+  std::string command = "python3 " + Quoted(ScriptPath(name));
   for (const std::string& argument : arguments) command += " " + Quoted(argument);
   return command;
 }
