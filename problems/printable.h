@@ -16,8 +16,8 @@ std::string Printable(std::string_view text);
 // A word of a file for a message: quoted, printable, and cut to 30 bytes.
 std::string Quoted(std::string_view word);
 
-// JSON text with the same characters as \uXXXX: it is read back as the same strings. The text must
-// be JSON in UTF-8.
+// JSON text with the same characters as "\uXXXX": it is read back as the same strings. The text
+// must be JSON in UTF-8.
 std::string PrintableJson(const std::string& json);
 
 // Well-formed UTF-8 (RFC 3629: no overlong forms, no surrogates, at most U+10FFFF).

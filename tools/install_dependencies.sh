@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that Rigel is built with, those that are missing. Asks nothing.
+# Installs the Debian packages that Rigel is built with, those that are missing, and those that are named. Asks nothing.
+#
+#   tools/install_dependencies.sh [PACKAGE ...]
 set -euo pipefail
 
 packages=(
@@ -8,6 +10,7 @@ packages=(
   libopencv-features2d-dev libopencv-imgcodecs-dev libopencv-calib3d-dev libyaml-cpp-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   parallel python3-matplotlib
+  "$@"
 )
 
 say() { echo "install_dependencies: $*" >&2; }

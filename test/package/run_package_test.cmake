@@ -58,6 +58,11 @@ find_program(consumer consumer PATHS ${build}/bin ${build}/bin/${RIGEL_CONFIG} N
 run(${consumer})
 message(STATUS "${output}")
 
+# The programs of docs/examples: they include what is installed and nothing else.
+run(${CMAKE_CTEST_COMMAND} --test-dir ${build}/examples --build-config ${RIGEL_CONFIG} --no-tests=error
+    --output-on-failure)
+message(STATUS "${output}")
+
 # Every C++ example of the README, each of which must end with 0.
 file(GLOB examples ${build}/readme_example_*.cc)
 if(NOT examples)
