@@ -46,7 +46,7 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${build} -G ${rigel_CMAKE_G
     -DCMAKE_CXX_COMPILER=${rigel_CMAKE_CXX_COMPILER}
     -DCMAKE_CXX_FLAGS=${rigel_CMAKE_CXX_FLAGS}
     -DCMAKE_BUILD_TYPE=${RIGEL_CONFIG}
-    "-DRIGEL_PAGES=${CMAKE_CURRENT_LIST_DIR}/../../README.md\;${CMAKE_CURRENT_LIST_DIR}/../../docs/pose_graph.md"
+    -DRIGEL_README=${CMAKE_CURRENT_LIST_DIR}/../../README.md
     -DCMAKE_RUNTIME_OUTPUT_DIRECTORY=${build}/bin
     -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
     "-DCMAKE_PREFIX_PATH=${prefix}\;${rigel_CMAKE_PREFIX_PATH}"
@@ -58,10 +58,10 @@ find_program(consumer consumer PATHS ${build}/bin ${build}/bin/${RIGEL_CONFIG} N
 run(${consumer})
 message(STATUS "${output}")
 
-# Every C++ example of the pages, each of which must end with 0.
-file(GLOB examples ${build}/*_example_*.cc)
+# Every C++ example of the README, each of which must end with 0.
+file(GLOB examples ${build}/readme_example_*.cc)
 if(NOT examples)
-  message(FATAL_ERROR "no example of the pages was compiled")
+  message(FATAL_ERROR "no example of the README was compiled")
 endif()
 foreach(source IN LISTS examples)
   get_filename_component(name ${source} NAME_WE)
