@@ -39,6 +39,8 @@ field() {
 {
   echo "<!-- Written by test/refinement_study.sh; do not edit. -->"
   echo
+  echo "# The refinement against the Cramer-Rao bound"
+  echo
   echo "## Efficiency"
   echo
   echo "RMS error over RMS bound, rotation and direction of translation; $pairs pairs a row, 0.5 px, exact vertical"
