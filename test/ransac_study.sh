@@ -23,9 +23,12 @@ table() {
   echo "# RANSAC and refinement together"
   echo
   echo "One thread, $pairs pairs a row, random motion (planar for \`3pt\`), 1 degree, 0.5 px, exact priors. Times are the least of"
-  echo "three runs of a pair. Success: rotation error within three times the pair's own Cramer-Rao bound; bound: RMS error over RMS"
-  echo "bound of the pairs that succeed; clean: median error over that of the same pairs without outliers; missed: failed pairs that"
-  echo "succeed if refined from the truth."
+  echo "three runs of a pair. The columns:"
+  echo
+  echo "- success: the share of pairs whose rotation error is within three times the pair's own Cramer-Rao bound;"
+  echo "- bound: RMS error over RMS bound of the pairs that succeed;"
+  echo "- clean: median error over that of the same pairs without outliers;"
+  echo "- missed: failed pairs that succeed if they are refined from the truth."
   echo
   echo "## Time: 626 matches, 30 percent outliers"
   echo
@@ -34,7 +37,7 @@ table() {
     echo
     echo "## Time on $(basename "$matches")"
     echo
-    echo "The error includes that of the ground truth; a car's vertical for a prior."
+    echo "The error includes that of the ground truth. The prior is that a car turns about its vertical."
     echo
     table --ransac=speed --matches="$matches" --prior=body
   fi
@@ -45,21 +48,23 @@ table() {
   echo
   echo "## Parts left out or added"
   echo
-  echo "Least iterations and finalists cost time here and are for priors that are off (docs/solver_choice.md). After the bail-out"
-  echo "test early termination saves little. What differs by less than a tenth may be the machine's noise."
+  echo "The least number of iterations and the finalists cost time here. They help where a prior is wrong"
+  echo "(docs/solver_choice.md). After the bail-out test early termination saves little. Times that differ by less than a tenth"
+  echo "may be the machine's noise."
   echo
   table --ransac=ablation --pairs="$pairs"
   echo
   echo "## A car that moves by itself"
   echo
-  echo "Static: the motion holds nine in ten of the static matches that the true one does."
+  echo "Static: the share of pairs whose motion fits nine in ten of the static matches that the true motion fits."
   echo
   table --ransac=moving --pairs="$pairs"
   echo
   echo "## No match that follows any motion"
   echo
-  echo "Default options, two cameras, half of the matches between them, all points anywhere in the images. Largest: of the pairs of"
-  echo "a row, time of the processor. \`rigel_benchmark --ransac=hostile --pairs=1000\`. A motion for an answer would be a wrong one."
+  echo "Default options, two cameras, half of the matches between them, all points anywhere in the images. Times are processor"
+  echo "times; the largest is that over the pairs of a row. Any motion as an answer would be wrong. Measured by"
+  echo "\`rigel_benchmark --ransac=hostile --pairs=1000\`."
   echo
   table --ransac=hostile --pairs=1000
 } >"$work/tables.md"

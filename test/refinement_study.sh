@@ -39,6 +39,8 @@ field() {
 {
   echo "<!-- Written by test/refinement_study.sh; do not edit. -->"
   echo
+  echo "# The refinement against the Cramer-Rao bound"
+  echo
   echo "## Efficiency"
   echo
   echo "RMS error over RMS bound, rotation and direction of translation; $pairs pairs a row, 0.5 px, exact vertical"
@@ -78,9 +80,9 @@ field() {
   echo
   echo "## A prior with noise"
   echo
-  echo "RMS rotation errors, degrees. The gravity of view 2 is off by exactly that pitch, and the refinement weighs it by that"
-  echo "sigma (\`--use_prior_in_refine\`). $pairs pairs, 200 intra-camera matches, 1 degree, |t| held, solver \`4pt\`. Efficiency is"
-  echo "over the bound that includes the prior."
+  echo "RMS rotation errors, degrees. The gravity of view 2 has an error of exactly that pitch, and the refinement weights it by"
+  echo "that sigma (\`--use_prior_in_refine\`). $pairs pairs, 200 intra-camera matches, 1 degree, |t| held, solver \`4pt\`. The bound"
+  echo "includes the prior; the efficiency is RMS error over it."
   echo
   echo "| motion | noise | raw | with the prior | without | with / without | bound | efficiency |"
   echo "| --- | --- | --- | --- | --- | --- | --- | --- |"

@@ -18,22 +18,26 @@ solvers=3pt,4pt,4pt-axis,5pt+1,auto
   echo "# Which solver, and what \`auto\` does"
   echo
   echo "\`--solver=auto\` begins with the most constrained solver that the priors allow: \`3pt\` (planar motion), \`4pt\` (known"
-  echo "vertical), \`4pt-axis\` (known axis). Where there is cause for doubt in what it finds in 50 iterations, those that need no"
-  echo "prior are asked for 100: \`5pt+1\`, and where most of the matches are of camera pairs that have no five, \`6pt-ventura\` and"
-  echo "\`17pt-li\`. The other constrained ones come after them. The first whose motion gives no cause for doubt goes on alone; if"
-  echo "there is none, the best constrained one and those without a prior take turns until the one that leads has drawn a sample"
-  echo "of inliers with the confidence asked for. All share one budget, \`--max_iterations\`. Causes for doubt: fewer than half of"
-  echo "the matches agree with the motion, 10 percent more agree at twice the threshold, or it turned away from the prior by more"
-  echo "than 2 degrees. What was tried and why is in the JSON of rigel_estimate, \`auto\`."
+  echo "vertical), \`4pt-axis\` (known axis). It runs 50 iterations. If its motion is doubtful, others follow:"
   echo
-  echo "The refinement does not hold the prior, so that what a prior is worth is time: with many outliers the smaller sample"
-  echo "needs fewer iterations, and a wrong prior costs what the first 50 iterations take. What is weighed in the refinement"
+  echo "1. The solvers without a prior run 100 iterations: \`5pt+1\`, and \`6pt-ventura\` and \`17pt-li\` where most of the matches"
+  echo "   are of camera pairs with fewer than five matches. The other constrained solvers come after them."
+  echo "2. The first solver whose motion is not doubtful goes on alone."
+  echo "3. If there is none, the best constrained solver and those without a prior take turns. They stop when the one that leads"
+  echo "   has drawn a sample of inliers with the required confidence."
+  echo
+  echo "All solvers share one budget, \`--max_iterations\`. A motion is doubtful for one of three reasons: fewer than half of the"
+  echo "matches agree with it, 10 percent more agree at twice the threshold, or it turned away from the prior by more than 2"
+  echo "degrees. \`auto\` in the JSON of rigel_estimate has what was tried and why."
+  echo
+  echo "The refinement does not hold the prior, so a prior only saves time. With many outliers a smaller sample needs fewer"
+  echo "iterations. A wrong prior costs the time of the first 50 iterations. But a prior that is weighted in the refinement"
   echo "(\`--use_prior_in_refine\`) must be right."
   echo
-  echo "$pairs pairs a row, 300 intra-camera matches, 50 percent outliers, 0.5 px; \`planar\` is motion in the plane, \`random\`"
-  echo "has vertical motion, which the prior of \`3pt\` denies; noise is the error of the prior (\`--prior=body"
-  echo "--prior_noise_deg\`, about a random axis). Each cell: median of the raw"
-  echo "and of the refined rotation error, degrees, and the median time, ms."
+  echo "$pairs pairs a row, 300 intra-camera matches, 50 percent outliers, 0.5 px. \`planar\` is motion in the plane. \`random\` has"
+  echo "vertical motion, which contradicts the prior of \`3pt\`. Noise is the error of the prior, about a random axis"
+  echo "(\`--prior=body --prior_noise_deg\`). A cell holds the median of the raw and of the refined rotation error, in degrees,"
+  echo "and the median time in ms."
   echo
   echo "| motion | turn | noise | 3pt | 4pt | 4pt-axis | 5pt+1 | auto |"
   echo "| --- | --- | --- | --- | --- | --- | --- | --- |"
@@ -57,10 +61,12 @@ solvers=3pt,4pt,4pt-axis,5pt+1,auto
   echo
   echo "## What a wrong prior costs"
   echo
-  echo "\`auto\` with \`--prior=body\` against \`5pt+1\`, which needs no prior: 400 matches, 30 percent outliers, 0.5 px, two forward"
-  echo "cameras (\`stereo\`) or a ring of 4 or 8, turned about the body's down, where the prior is right, or about a random axis,"
-  echo "where it is wrong. p50 / p90 over the pairs, each its least of 9 runs in turns (\`test/solver_choice_times.py\`): time of"
-  echo "the pair over that of \`5pt+1\`, times in ms, refined rotation errors in degrees.${RIGEL_REAL_DATA:+ euroc_loop is a real drone that turns by 26 degrees.}"
+  echo "\`auto\` with \`--prior=body\` against \`5pt+1\`, which needs no prior. 400 matches, 30 percent outliers, 0.5 px. The rig is"
+  echo "two forward cameras (\`stereo\`) or a ring of 4 or 8. It turns about the body's down, where the prior is right, or about a"
+  echo "random axis, where it is wrong.${RIGEL_REAL_DATA:+ euroc_loop is a real drone that turns by 26 degrees.}"
+  echo
+  echo "A cell holds p50 / p90 over the pairs: the time of a pair over that of \`5pt+1\`, times in ms, and refined rotation errors"
+  echo "in degrees. A time is the least of 9 runs, which alternate between the two (\`test/solver_choice_times.py\`)."
   echo
   echo "| rig, turn | pairs | time over 5pt+1's | auto, ms | 5pt+1, ms | auto, deg | 5pt+1, deg |"
   echo "| --- | --- | --- | --- | --- | --- | --- |"
