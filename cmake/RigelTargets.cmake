@@ -11,17 +11,25 @@ function(rigel_warnings target)
   endif()
 endfunction()
 
+# rigel_kernels(a.cc b.cc): files of plain loops (core/cpu_path.h). The compiler may not fuse operations, else paths
+# differ in their last bits; it may evaluate both sides of a choice, which alters no value; and -O2 of g++ 12 leaves
+# most of them scalar.
+function(rigel_kernels)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS
+    "-ffp-contract=off;-fno-math-errno;-fno-trapping-math;-Wno-psabi;$<$<CONFIG:Release,RelWithDebInfo>:-O3>")
+endfunction()
+
 # Installed programs and shared libraries find Rigel's shared libraries wherever the prefix is.
 file(RELATIVE_PATH RIGEL_BIN_TO_LIB ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
 set(CMAKE_INSTALL_RPATH $ORIGIN $ORIGIN/${RIGEL_BIN_TO_LIB})
 
-# rigel_library(core SOURCES a.cc b.cc HEADERS a.h b.h DEPENDS rigel::x): target rigel_core with alias rigel::core,
+# rigel_library(core SOURCES a.cc b.cc DEPENDS rigel::x): target rigel_core with alias rigel::core,
 # exported as rigel::core. BUILD_DEPENDS are header-only libraries that its sources alone include: the installed
 # package does without them.
 function(rigel_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;DEPENDS;PRIVATE_DEPENDS;BUILD_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS;BUILD_DEPENDS" ${ARGN})
   set(target rigel_${name})
-  add_library(${target} ${ARG_SOURCES} ${ARG_HEADERS})
+  add_library(${target} ${ARG_SOURCES})
   add_library(rigel::${name} ALIAS ${target})
   rigel_warnings(${target})
   target_include_directories(${target} PUBLIC
@@ -39,5 +47,6 @@ function(rigel_library name)
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
           RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  install(FILES ${ARG_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rigel/${name})
+  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rigel/${name}
+          FILES_MATCHING PATTERN "*.h")
 endfunction()

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "rigel/core/prior.h"
-#include "rigel/minimal/prepared_matches.h"
-#include "rigel/minimal/sampler.h"
-#include "rigel/minimal/solutions.h"
+#include "rigel/minimal/ransac/sampler.h"
+#include "rigel/minimal/solvers/prepared_matches.h"
+#include "rigel/minimal/solvers/solutions.h"
 
 namespace rigel {
 

@@ -29,8 +29,8 @@
 
 #include "rigel/core/eigen_types.h"
 #include "rigel/core/pose.h"
+#include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/refine/refine.h"
-#include "rigel/refine/uncertainty.h"
 
 namespace rigel {
 

@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include "rigel/core/alignment.h"
 #include "rigel/core/body_axes.h"
+#include "rigel/core/grouped_matches.h"
 #include "rigel/core/pixel_unit.h"
 #include "rigel/core/rig_centre.h"
-#include "rigel/minimal/alignment.h"
-#include "rigel/minimal/grouped_matches.h"
-#include "rigel/minimal/two_point_ackermann.h"
-#include "rigel/refine/chance.h"
-#include "rigel/refine/motion_search.h"
+#include "rigel/minimal/solvers/two_point_ackermann.h"
 #include "rigel/refine/rig_doubts.h"
+#include "rigel/refine/search/chance.h"
+#include "rigel/refine/search/motion_search.h"
 
 namespace rigel {
 namespace {

@@ -11,8 +11,8 @@
 #include "rigel/core/frame_pair.h"
 #include "rigel/core/stop.h"
 #include "rigel/minimal/catalogue.h"
-#include "rigel/minimal/ransac.h"
-#include "rigel/minimal/solutions.h"
+#include "rigel/minimal/ransac/ransac.h"
+#include "rigel/minimal/solvers/solutions.h"
 #include "rigel/refine/refine.h"
 #include "rigel/refine/solver_choice.h"
 

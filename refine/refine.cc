@@ -7,22 +7,22 @@
 #include <limits>
 #include <utility>
 
+#include "rigel/core/alignment.h"
 #include "rigel/core/angles.h"
 #include "rigel/core/frame_pair.h"
 #include "rigel/core/median.h"
 #include "rigel/core/pixel_unit.h"
 #include "rigel/core/rays.h"
 #include "rigel/core/rig_centre.h"
-#include "rigel/minimal/alignment.h"
-#include "rigel/refine/ceres_engine.h"
-#include "rigel/refine/chance.h"
-#include "rigel/refine/group_noise.h"
-#include "rigel/refine/inlier_selection.h"
-#include "rigel/refine/motion_parameterization.h"
-#include "rigel/refine/prior_residuals.h"
-#include "rigel/refine/scale_search.h"
-#include "rigel/refine/sign_and_scale.h"
-#include "rigel/refine/small_engine.h"
+#include "rigel/refine/least_squares/ceres_engine.h"
+#include "rigel/refine/least_squares/motion_parameterization.h"
+#include "rigel/refine/least_squares/prior_residuals.h"
+#include "rigel/refine/least_squares/small_engine.h"
+#include "rigel/refine/search/chance.h"
+#include "rigel/refine/search/group_noise.h"
+#include "rigel/refine/search/inlier_selection.h"
+#include "rigel/refine/search/scale_search.h"
+#include "rigel/refine/search/sign_and_scale.h"
 
 namespace rigel {
 namespace {

@@ -14,16 +14,16 @@
 #include <Eigen/Core>
 
 #include "rigel/core/eigen_types.h"
+#include "rigel/core/grouped_matches.h"
 #include "rigel/core/match.h"
 #include "rigel/core/pixel_unit.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/prior.h"
 #include "rigel/core/rig.h"
 #include "rigel/core/stop.h"
-#include "rigel/minimal/grouped_matches.h"
-#include "rigel/refine/epipolar_residuals.h"
-#include "rigel/refine/loss.h"
-#include "rigel/refine/uncertainty.h"
+#include "rigel/refine/least_squares/epipolar_residuals.h"
+#include "rigel/refine/least_squares/loss.h"
+#include "rigel/refine/least_squares/uncertainty.h"
 
 namespace rigel {
 

@@ -5,9 +5,9 @@
 #include <limits>
 #include <string>
 
+#include "rigel/core/alignment.h"
 #include "rigel/core/angles.h"
 #include "rigel/core/metrics.h"
-#include "rigel/minimal/alignment.h"
 
 namespace rigel {
 

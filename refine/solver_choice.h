@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "rigel/core/grouped_matches.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/prior.h"
 #include "rigel/minimal/catalogue.h"
-#include "rigel/minimal/grouped_matches.h"
 
 namespace rigel {
 

@@ -12,8 +12,8 @@
 #include "rigel/core/angles.h"
 #include "rigel/core/body_axes.h"
 #include "rigel/core/pixel_unit.h"
-#include "rigel/problems/match_file.h"
-#include "rigel/problems/message_groups.h"
+#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/message_groups.h"
 #include "rigel/refine/solver_choice.h"
 #include "rigel/tools/tool.h"
 

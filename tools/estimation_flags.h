@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "rigel/core/frame_pair.h"
-#include "rigel/problems/comparison.h"
-#include "rigel/problems/shard.h"
+#include "rigel/problems/evaluation/comparison.h"
+#include "rigel/problems/evaluation/shard.h"
 #include "rigel/tools/tool.h"
 
 namespace rigel {

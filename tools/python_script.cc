@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "rigel/problems/match_file.h"
+#include "rigel/problems/io/match_file.h"
 
 namespace rigel {
 namespace {

@@ -6,14 +6,14 @@
 
 #include <gflags/gflags.h>
 
-#include "rigel/problems/hostile_benchmark.h"
-#include "rigel/problems/match_file.h"
-#include "rigel/problems/opengv_peers.h"
-#include "rigel/problems/prior_source.h"
-#include "rigel/problems/ransac_benchmark.h"
-#include "rigel/problems/refine_benchmark.h"
-#include "rigel/problems/solver_benchmark.h"
-#include "rigel/problems/table.h"
+#include "rigel/problems/benchmarks/hostile_benchmark.h"
+#include "rigel/problems/benchmarks/opengv_peers.h"
+#include "rigel/problems/benchmarks/ransac_benchmark.h"
+#include "rigel/problems/benchmarks/refine_benchmark.h"
+#include "rigel/problems/benchmarks/solver_benchmark.h"
+#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/table.h"
+#include "rigel/problems/scenes/prior_source.h"
 #include "rigel/refine/solver_choice.h"
 #include "rigel/tools/tool.h"
 

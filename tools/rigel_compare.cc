@@ -8,12 +8,12 @@
 
 #include <gflags/gflags.h>
 
-#include "rigel/problems/batch.h"
-#include "rigel/problems/bounds.h"
-#include "rigel/problems/match_file.h"
-#include "rigel/problems/report.h"
-#include "rigel/problems/sequence_tables.h"
-#include "rigel/problems/shard_report.h"
+#include "rigel/problems/evaluation/batch.h"
+#include "rigel/problems/evaluation/bounds.h"
+#include "rigel/problems/evaluation/report.h"
+#include "rigel/problems/evaluation/sequence_tables.h"
+#include "rigel/problems/evaluation/shard_report.h"
+#include "rigel/problems/io/match_file.h"
 #include "rigel/refine/solver_choice.h"
 #include "rigel/tools/estimation_flags.h"
 #include "rigel/tools/tool.h"

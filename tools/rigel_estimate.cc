@@ -6,13 +6,13 @@
 
 #include <gflags/gflags.h>
 
-#include "rigel/problems/batch.h"
-#include "rigel/problems/g2o_file.h"
-#include "rigel/problems/match_file.h"
-#include "rigel/problems/message_groups.h"
-#include "rigel/problems/report.h"
-#include "rigel/problems/trajectory_file.h"
-#include "rigel/problems/whole_file.h"
+#include "rigel/problems/evaluation/batch.h"
+#include "rigel/problems/evaluation/report.h"
+#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/message_groups.h"
+#include "rigel/problems/io/trajectory_file.h"
+#include "rigel/problems/io/whole_file.h"
+#include "rigel/problems/trajectories/g2o_file.h"
 #include "rigel/refine/solver_choice.h"
 #include "rigel/tools/estimation_flags.h"
 #include "rigel/tools/tool.h"

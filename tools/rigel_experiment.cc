@@ -10,12 +10,12 @@
 
 #include <gflags/gflags.h>
 
-#include "rigel/problems/experiment.h"
-#include "rigel/problems/experiment_report.h"
-#include "rigel/problems/experiment_store.h"
-#include "rigel/problems/match_file.h"
-#include "rigel/problems/run_lock.h"
-#include "rigel/problems/whole_file.h"
+#include "rigel/problems/experiments/experiment.h"
+#include "rigel/problems/experiments/experiment_report.h"
+#include "rigel/problems/experiments/experiment_store.h"
+#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/run_lock.h"
+#include "rigel/problems/io/whole_file.h"
 #include "rigel/tools/python_script.h"
 #include "rigel/tools/tool.h"
 

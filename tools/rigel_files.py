@@ -52,7 +52,7 @@ def open_temporary(place):
 
 
 def write_whole(path, data):
-    """As the programs write (rigel/problems/whole_file.h): a regular file is replaced by a whole
+    """As the programs write (rigel/problems/io/whole_file.h): a regular file is replaced by a whole
     one with its mode and owner, all else is written to."""
     place = os.path.realpath(path)
     status = os.stat(path) if os.path.exists(path) else None

@@ -12,7 +12,7 @@
 #include "rigel/problems/images/euroc_sequence.h"
 #include "rigel/problems/images/kitti_sequence.h"
 #include "rigel/problems/images/sequence_matching.h"
-#include "rigel/problems/match_file.h"
+#include "rigel/problems/io/match_file.h"
 #include "rigel/tools/tool.h"
 
 DEFINE_string(kitti_root, "",

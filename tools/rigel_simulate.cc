@@ -11,11 +11,11 @@
 
 #include <gflags/gflags.h>
 
-#include "rigel/problems/kitti_poses.h"
-#include "rigel/problems/match_file.h"
-#include "rigel/problems/parallel.h"
-#include "rigel/problems/synthetic.h"
-#include "rigel/problems/whole_file.h"
+#include "rigel/core/parallel.h"
+#include "rigel/problems/io/kitti_poses.h"
+#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/whole_file.h"
+#include "rigel/problems/scenes/synthetic.h"
 #include "rigel/tools/tool.h"
 
 DEFINE_string(

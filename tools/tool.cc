@@ -21,13 +21,13 @@
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
-#include "rigel/problems/csv.h"
-#include "rigel/problems/exception_message.h"
-#include "rigel/problems/input_file.h"
-#include "rigel/problems/match_file.h"
-#include "rigel/problems/output_place.h"
-#include "rigel/problems/version.h"
-#include "rigel/problems/whole_file.h"
+#include "rigel/problems/io/csv.h"
+#include "rigel/problems/io/exception_message.h"
+#include "rigel/problems/io/input_file.h"
+#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/output_place.h"
+#include "rigel/problems/io/version.h"
+#include "rigel/problems/io/whole_file.h"
 
 // gflags leaves the process through this pointer, with code 1; it is not in a public header.
 namespace google {

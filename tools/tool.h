@@ -47,7 +47,7 @@ bool FlushStdout();
 // Whether an output goes to stdout: "-", /dev/stdout or a link to it.
 bool IsStdout(const std::string& path);
 
-// Writes to a file, whole or not at all (rigel/problems/whole_file.h), or to stdout; nothing if
+// Writes to a file, whole or not at all (rigel/problems/io/whole_file.h), or to stdout; nothing if
 // `path` is empty. False with a message on stderr if that fails.
 bool WriteOutput(const std::string& path, const std::string& text);
 
@@ -66,7 +66,7 @@ bool OutputsDiffer(const std::vector<OutputFlag>& outputs, std::string* error);
 bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
                         const std::vector<std::string>& inputs, std::string* error);
 
-// Reads a text file (rigel/problems/input_file.h) of at most 1 GiB without its byte order mark.
+// Reads a text file (rigel/problems/io/input_file.h) of at most 1 GiB without its byte order mark.
 // False with a message on stderr if that fails.
 bool ReadInput(const std::string& path, std::string* text);
 

@@ -11,12 +11,12 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "rigel/problems/csv.h"
 #include "rigel/problems/images/stereo_stamps.h"
-#include "rigel/problems/input_file.h"
-#include "rigel/problems/match_file.h"
-#include "rigel/problems/printable.h"
-#include "rigel/problems/text_lines.h"
+#include "rigel/problems/io/csv.h"
+#include "rigel/problems/io/input_file.h"
+#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
+#include "rigel/problems/io/text_lines.h"
 
 namespace rigel {
 namespace {

@@ -16,8 +16,8 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "rigel/problems/exception_message.h"
-#include "rigel/problems/match_file.h"
+#include "rigel/problems/io/exception_message.h"
+#include "rigel/problems/io/match_file.h"
 
 namespace rigel {
 namespace {

@@ -9,10 +9,10 @@
 #include <set>
 #include <system_error>
 
-#include "rigel/problems/kitti_poses.h"
-#include "rigel/problems/match_file.h"
-#include "rigel/problems/printable.h"
-#include "rigel/problems/text_lines.h"
+#include "rigel/problems/io/kitti_poses.h"
+#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
+#include "rigel/problems/io/text_lines.h"
 
 namespace rigel {
 namespace {

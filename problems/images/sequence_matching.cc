@@ -12,13 +12,13 @@
 #include <system_error>
 #include <utility>
 
-#include "rigel/problems/csv.h"
-#include "rigel/problems/exception_message.h"
-#include "rigel/problems/match_file.h"
-#include "rigel/problems/parallel.h"
-#include "rigel/problems/printable.h"
-#include "rigel/problems/text_lines.h"
-#include "rigel/problems/whole_file.h"
+#include "rigel/core/parallel.h"
+#include "rigel/problems/io/csv.h"
+#include "rigel/problems/io/exception_message.h"
+#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
+#include "rigel/problems/io/text_lines.h"
+#include "rigel/problems/io/whole_file.h"
 
 namespace rigel {
 namespace {

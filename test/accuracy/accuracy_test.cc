@@ -22,9 +22,9 @@
 #include <nlohmann/json.hpp>
 
 #include "rigel/core/angles.h"
-#include "rigel/problems/comparison.h"
-#include "rigel/problems/experiment.h"
-#include "rigel/problems/synthetic.h"
+#include "rigel/problems/evaluation/comparison.h"
+#include "rigel/problems/experiments/experiment.h"
+#include "rigel/problems/scenes/synthetic.h"
 
 namespace rigel {
 namespace {

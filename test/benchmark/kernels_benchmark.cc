@@ -10,13 +10,13 @@
 
 #include <benchmark/benchmark.h>
 
+#include "rigel/core/grouped_matches.h"
 #include "rigel/minimal/catalogue.h"
-#include "rigel/minimal/grouped_matches.h"
-#include "rigel/problems/match_file.h"
-#include "rigel/problems/synthetic.h"
-#include "rigel/refine/epipolar_residuals.h"
+#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/scenes/synthetic.h"
+#include "rigel/refine/least_squares/epipolar_residuals.h"
+#include "rigel/refine/least_squares/small_engine.h"
 #include "rigel/refine/refine.h"
-#include "rigel/refine/small_engine.h"
 
 namespace rigel {
 namespace {

@@ -1,5 +1,5 @@
 // rigel_compare --baseline: an earlier report, held against itself, and --fail_above.
-#include "rigel/problems/bounds.h"
+#include "rigel/problems/evaluation/bounds.h"
 #include "rigel/test/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,6 +1,6 @@
 // Stored experiments: finished points, for --resume.
-#include "rigel/problems/experiment_report.h"
-#include "rigel/problems/experiment_store.h"
+#include "rigel/problems/experiments/experiment_report.h"
+#include "rigel/problems/experiments/experiment_store.h"
 #include "rigel/test/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,6 +1,6 @@
 // KITTI's layout: calib.txt, times.txt, poses and the name of an image, in this order.
 #include "rigel/problems/images/kitti_sequence.h"
-#include "rigel/problems/kitti_poses.h"
+#include "rigel/problems/io/kitti_poses.h"
 #include "rigel/test/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,6 +1,6 @@
 // Match files: any bytes either parse to a valid frame pair, which then survives being written and
 // read again, or give a one-line message.
-#include "rigel/problems/match_file.h"
+#include "rigel/problems/io/match_file.h"
 #include "rigel/test/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,7 +1,7 @@
 // rigel_compare --merge: reports of shards.
 #include <nlohmann/json.hpp>
 
-#include "rigel/problems/shard_report.h"
+#include "rigel/problems/evaluation/shard_report.h"
 #include "rigel/test/fuzz/fuzz.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // Rigs: camera lines of a match file, and a pair in which every two cameras have a match.
-#include "rigel/problems/match_file.h"
+#include "rigel/problems/io/match_file.h"
 #include "rigel/refine/estimate_motion.h"
 #include "rigel/test/fuzz/fuzz.h"
 

@@ -13,6 +13,7 @@
 
 #include <Eigen/Core>
 
+#include "rigel/core/alignment.h"
 #include "rigel/core/angles.h"
 #include "rigel/core/match.h"
 #include "rigel/core/metrics.h"
@@ -20,9 +21,8 @@
 #include "rigel/core/prior.h"
 #include "rigel/core/random.h"
 #include "rigel/core/rig.h"
-#include "rigel/minimal/alignment.h"
-#include "rigel/minimal/prepared_matches.h"
-#include "rigel/minimal/solutions.h"
+#include "rigel/minimal/solvers/prepared_matches.h"
+#include "rigel/minimal/solvers/solutions.h"
 
 namespace rigel {
 

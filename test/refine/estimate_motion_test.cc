@@ -12,8 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rigel/problems/parallel.h"
-#include "rigel/problems/prior_source.h"
+#include "rigel/core/parallel.h"
+#include "rigel/problems/scenes/prior_source.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {

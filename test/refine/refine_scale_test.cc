@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "rigel/problems/parallel.h"
+#include "rigel/core/parallel.h"
 #include "rigel/refine/estimate_motion.h"
 #include "rigel/test/refine/refine_scene.h"
 

@@ -15,7 +15,7 @@
 #include "rigel/core/metrics.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/random.h"
-#include "rigel/problems/synthetic.h"
+#include "rigel/problems/scenes/synthetic.h"
 #include "rigel/refine/refine.h"
 #include "rigel/test/core/random_vector.h"
 

@@ -14,8 +14,8 @@
 
 #include "rigel/core/cheirality.h"
 #include "rigel/core/epipolar.h"
+#include "rigel/core/parallel.h"
 #include "rigel/core/rays.h"
-#include "rigel/problems/parallel.h"
 #include "rigel/refine/estimate_motion.h"
 #include "rigel/test/refine/refine_scene.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "rigel/problems/match_file.h"
+#include "rigel/problems/io/match_file.h"
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {

@@ -9,7 +9,7 @@
 #include "rigel/core/angles.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/rig_centre.h"
-#include "rigel/problems/match_file.h"
+#include "rigel/problems/io/match_file.h"
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {

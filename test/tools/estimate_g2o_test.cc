@@ -4,7 +4,7 @@
 
 #include <Eigen/LU>
 
-#include "rigel/test/problems/g2o_reader.h"
+#include "rigel/test/problems/trajectories/g2o_reader.h"
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {

@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 
 #include "rigel/core/pose.h"
-#include "rigel/problems/kitti_poses.h"
+#include "rigel/problems/io/kitti_poses.h"
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "rigel/problems/experiment.h"
+#include "rigel/problems/experiments/experiment.h"
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {

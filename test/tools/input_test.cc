@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "rigel/problems/gzip.h"
+#include "rigel/problems/io/gzip.h"
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {

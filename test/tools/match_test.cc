@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "rigel/core/metrics.h"
-#include "rigel/problems/match_file.h"
+#include "rigel/problems/io/match_file.h"
 #include "rigel/test/problems/images/plane_scene.h"
 #include "rigel/test/tools/tools_test.h"
 

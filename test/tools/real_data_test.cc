@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "rigel/problems/match_file.h"
-#include "rigel/test/problems/g2o_reader.h"
+#include "rigel/problems/io/match_file.h"
+#include "rigel/test/problems/trajectories/g2o_reader.h"
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {

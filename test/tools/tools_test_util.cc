@@ -12,7 +12,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "rigel/problems/match_file.h"
+#include "rigel/problems/io/match_file.h"
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "rigel/problems/synthetic.h"
+#include "rigel/problems/scenes/synthetic.h"
 #include "rigel/refine/between_factor.h"
 #include "rigel/refine/epipolar_cost.h"
 #include "rigel/refine/estimate_motion.h"

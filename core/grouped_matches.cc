@@ -1,0 +1,235 @@
+#include "rigel/core/grouped_matches.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+
+#include "rigel/core/rig_centre.h"
+
+namespace rigel {
+namespace {
+
+using RowMajor3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+// R s_i + t - s_j: the same sum as in core, for the same bits.
+Eigen::Vector3d Baseline(const Rig& rig, const MatchGroup& group, const Pose& pose) {
+  return pose.R * rig.cameras[group.camera1].s + pose.t - rig.cameras[group.camera2].s;
+}
+
+// Positions of the matches sorted by camera1, then camera2: where they are not yet, by a stable
+// counting sort, camera2 first.
+std::vector<int> GroupedOrder(int num_cameras, const std::vector<Match>& matches) {
+  std::vector<int> order(matches.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto comes_first = [](const Match& a, const Match& b) {
+    return a.camera1 != b.camera1 ? a.camera1 < b.camera1 : a.camera2 < b.camera2;
+  };
+  if (std::is_sorted(matches.begin(), matches.end(), comes_first)) return order;
+  std::vector<int> sorted(matches.size());
+  for (int Match::*camera : {&Match::camera2, &Match::camera1}) {
+    std::vector<int> next(num_cameras + 1);
+    for (const Match& match : matches) ++next[match.*camera + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    for (const int k : order) sorted[next[matches[k].*camera]++] = k;
+    order.swap(sorted);
+  }
+  return order;
+}
+
+}  // namespace
+
+GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches)
+    : rig_(rig), original_(GroupedOrder(rig.size(), matches)) {
+  for (const RigCamera& camera : rig.cameras) {
+    const PinholeCamera& c = camera.intrinsics;
+    unproject_.emplace_back(camera.Q * Eigen::Vector3d(1.0 / c.fx, 1.0 / c.fy, 1.0).asDiagonal());
+  }
+  const size_t n = matches.size();
+  matches_.reserve(n);
+  pixels_.resize(4 * n + kKernelPadding);
+  directions_.resize(6 * n + kKernelPadding);
+  for (size_t k = 0; k < n; ++k) {
+    const Match& m = matches[original_[k]];
+    if (groups_.empty() || groups_.back().camera1 != m.camera1 ||
+        groups_.back().camera2 != m.camera2) {
+      groups_.push_back({m.camera1, m.camera2, static_cast<int>(k), 0});
+    }
+    ++groups_.back().size;
+    matches_.push_back(m);
+    const PinholeCamera& c1 = rig.cameras[m.camera1].intrinsics;
+    const PinholeCamera& c2 = rig.cameras[m.camera2].intrinsics;
+    pixels_[k] = m.pixel1.x() - c1.cx;
+    pixels_[n + k] = m.pixel1.y() - c1.cy;
+    pixels_[2 * n + k] = m.pixel2.x() - c2.cx;
+    pixels_[3 * n + k] = m.pixel2.y() - c2.cy;
+    const RayPair rays = MakeRayPair(rig, m);
+    for (int i = 0; i < 3; ++i) {
+      directions_[i * n + k] = rays.ray1.x[i];
+      directions_[(3 + i) * n + k] = rays.ray2.x[i];
+    }
+  }
+}
+
+GroupedMatches GroupedMatches::WithOrigin(const Eigen::Vector3d& origin) const {
+  GroupedMatches moved = *this;
+  moved.rig_ = rigel::WithOrigin(rig_, origin);
+  return moved;
+}
+
+std::vector<size_t> GroupedMatches::StretchBegins(size_t count) const {
+  const size_t n = matches_.size();
+  // floor(i n / count) for i = 0, 1, ..., count; divisions would take longer than all the rest.
+  std::vector<size_t> begins(count + 1);
+  for (size_t i = 0, k = 0, remainder = 0; i <= count; ++i) {
+    begins[i] = k;
+    if (i == count) break;
+    k += n / count;
+    remainder += n % count;
+    if (remainder >= count) {
+      remainder -= count;
+      ++k;
+    }
+  }
+  return begins;
+}
+
+GroupedMatches GroupedMatches::EvenSubset(size_t count) const {
+  std::vector<size_t> taken = StretchBegins(std::min(count, matches_.size()));
+  taken.pop_back();
+  return Subset(taken);
+}
+
+GroupedMatches GroupedMatches::DrawnSubset(size_t count) const {
+  std::vector<size_t> taken = StretchBegins(std::min(count, matches_.size()));
+  uint64_t state = 1;
+  for (size_t i = 0; i + 1 < taken.size(); ++i) {
+    state = state * 6364136223846793005u + 1442695040888963407u;  // Knuth's MMIX
+    taken[i] += (state >> 32) * (taken[i + 1] - taken[i]) >> 32;
+  }
+  taken.pop_back();
+  return Subset(taken);
+}
+
+GroupedMatches GroupedMatches::Subset(const std::vector<size_t>& taken) const {
+  const size_t n = matches_.size(), count = taken.size();
+  GroupedMatches subset;
+  subset.rig_ = rig_;
+  subset.unproject_ = unproject_;
+  subset.original_.resize(count);
+  std::iota(subset.original_.begin(), subset.original_.end(), 0);
+  subset.matches_.reserve(count);
+  for (const size_t k : taken) subset.matches_.push_back(matches_[k]);
+  subset.pixels_.resize(4 * count + kKernelPadding);
+  subset.directions_.resize(6 * count + kKernelPadding);
+  const auto take = [&](const double* coordinate, double* result) {
+    for (size_t i = 0; i < count; ++i) result[i] = coordinate[taken[i]];
+  };
+  for (int c = 0; c < 4; ++c) take(pixels_.data() + c * n, subset.pixels_.data() + c * count);
+  for (int c = 0; c < 6; ++c) {
+    take(directions_.data() + c * n, subset.directions_.data() + c * count);
+  }
+  size_t next = 0;
+  for (const MatchGroup& group : groups_) {
+    const size_t begin = next;
+    while (next < count && taken[next] < static_cast<size_t>(group.begin + group.size)) ++next;
+    if (next == begin) continue;
+    subset.groups_.push_back(
+        {group.camera1, group.camera2, static_cast<int>(begin), static_cast<int>(next - begin)});
+  }
+  return subset;
+}
+
+RayPair GroupedMatches::rays(int k) const {
+  const size_t n = matches_.size();
+  const double* x = directions_.data() + k;
+  return {{{x[0], x[n], x[2 * n]}, rig_.cameras[matches_[k].camera1].s},
+          {{x[3 * n], x[4 * n], x[5 * n]}, rig_.cameras[matches_[k].camera2].s}};
+}
+
+PixelArrays GroupedMatches::Pixels(const MatchGroup& group) const {
+  const double* x1 = pixels_.data() + group.begin;
+  const size_t n = matches_.size();
+  return {x1, x1 + n, x1 + 2 * n, x1 + 3 * n, group.size};
+}
+
+RayArrays GroupedMatches::Directions(const MatchGroup& group) const {
+  const double* x1 = directions_.data() + group.begin;
+  const size_t n = matches_.size();
+  return {x1, x1 + n, x1 + 2 * n, x1 + 3 * n, x1 + 4 * n, x1 + 5 * n};
+}
+
+GroupMotion GroupedMatches::MotionOf(const MatchGroup& group, const Pose& pose,
+                                     double threshold_px) const {
+  GroupMotion motion;
+  Eigen::Map<RowMajor3d>(motion.R) = pose.R;
+  Eigen::Map<Eigen::Vector3d>(motion.b) = Baseline(rig_, group, pose);
+  const double min_sin_parallax = DecidedParallax(group, threshold_px);
+  motion.min_sin2 = min_sin_parallax * min_sin_parallax;
+  return motion;
+}
+
+Eigen::Matrix3d GroupedMatches::Fundamental(const MatchGroup& group, const Pose& pose) const {
+  // CentredFundamental() of EssentialMatrix(), with what is the same for all poses made once.
+  const Eigen::Vector3d b = Baseline(rig_, group, pose);
+  const Eigen::Matrix3d RA = pose.R * unproject_[group.camera1];
+  Eigen::Matrix3d bRA;
+  for (int k = 0; k < 3; ++k) bRA.col(k) = b.cross(RA.col(k));
+  return unproject_[group.camera2].transpose() * bRA;
+}
+
+double GroupedMatches::Score(const Pose& pose, double threshold_px, double bound, int* num_inliers,
+                             const LossTable* loss) const {
+  if (num_inliers != nullptr) *num_inliers = 0;
+  double sum = 0.0;
+  for (const MatchGroup& group : groups_) {
+    if (sum > bound) break;
+    const RowMajor3d F = Fundamental(group, pose);
+    sum = TruncatedSampsonSum(Pixels(group), F.data(), threshold_px * threshold_px, bound, sum,
+                              num_inliers, BestCpuPath(), loss);
+  }
+  return sum;
+}
+
+double GroupedMatches::DecidedParallax(const MatchGroup& group, double threshold_px) const {
+  const PinholeCamera& c1 = rig_.cameras[group.camera1].intrinsics;
+  const PinholeCamera& c2 = rig_.cameras[group.camera2].intrinsics;
+  return 2.0 * threshold_px / std::min({c1.fx, c1.fy, c2.fx, c2.fy});
+}
+
+double GroupedMatches::ScoreInFront(const Pose& pose, double threshold_px, double bound,
+                                    int* num_inliers, const LossTable* loss) const {
+  if (num_inliers != nullptr) *num_inliers = 0;
+  double sum = 0.0;
+  for (const MatchGroup& group : groups_) {
+    if (sum > bound) break;
+    const RowMajor3d F = Fundamental(group, pose);
+    sum = TruncatedSampsonSumInFront(
+        Pixels(group), Directions(group), F.data(), MotionOf(group, pose, threshold_px),
+        threshold_px * threshold_px, bound, sum, num_inliers, BestCpuPath(), loss);
+  }
+  return sum;
+}
+
+int GroupedMatches::SelectInliers(const Pose& pose, double threshold_px,
+                                  std::vector<double>* errors, std::vector<char>* inliers) const {
+  errors->resize(matches_.size());
+  inliers->resize(matches_.size());
+  int count = 0;
+  for (const MatchGroup& group : groups_) {
+    const RowMajor3d F = Fundamental(group, pose);
+    count += SelectInFront(Pixels(group), Directions(group), F.data(),
+                           MotionOf(group, pose, threshold_px), threshold_px * threshold_px,
+                           errors->data() + group.begin, inliers->data() + group.begin);
+  }
+  return count;
+}
+
+void GroupedMatches::SquaredErrors(const Pose& pose, std::vector<double>* errors) const {
+  errors->resize(matches_.size());
+  for (const MatchGroup& group : groups_) {
+    const RowMajor3d F = Fundamental(group, pose);
+    SquaredSampsonErrors(Pixels(group), F.data(), errors->data() + group.begin);
+  }
+}
+
+}  // namespace rigel

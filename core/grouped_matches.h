@@ -1,0 +1,110 @@
+// The matches of a frame pair sorted by camera pair, ready for scoring: one fundamental matrix
+// serves a whole group.
+#ifndef RIGEL_CORE_GROUPED_MATCHES_H_
+#define RIGEL_CORE_GROUPED_MATCHES_H_
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "rigel/core/match.h"
+#include "rigel/core/pose.h"
+#include "rigel/core/rays.h"
+#include "rigel/core/rig.h"
+#include "rigel/core/score_kernel.h"
+
+namespace rigel {
+
+// Matches [begin, begin + size) of camera1 at time 1 and camera2 at time 2.
+struct MatchGroup {
+  int camera1 = 0;
+  int camera2 = 0;
+  int begin = 0;
+  int size = 0;
+};
+
+class GroupedMatches {
+ public:
+  GroupedMatches() = default;
+  // `matches` must name cameras of `rig` only and have finite pixels. Copies what it needs.
+  GroupedMatches(const Rig& rig, const std::vector<Match>& matches);
+
+  // The same matches with the origin of the rig's body frame moved (rig_centre.h).
+  GroupedMatches WithOrigin(const Eigen::Vector3d& origin) const;
+
+  const Rig& rig() const { return rig_; }
+  int size() const { return static_cast<int>(matches_.size()); }
+  const std::vector<MatchGroup>& groups() const { return groups_; }
+
+  // In grouped order; within a group in the order of the input.
+  const std::vector<Match>& matches() const { return matches_; }
+
+  // At most `count` of the matches, evenly over their order: enough to tell a good motion from a
+  // bad one. original() is then the position in the subset.
+  GroupedMatches EvenSubset(size_t count) const;
+  // The same, but one drawn from each of as many stretches of the order, where it must not matter
+  // that kinds of matches alternate. Always the same draw.
+  GroupedMatches DrawnSubset(size_t count) const;
+
+  // Q diag(1 / fx, 1 / fy, 1): centred pixels, with 1 as third coordinate, to directions.
+  const Eigen::Matrix3d& Unprojection(int camera) const { return unproject_[camera]; }
+
+  // Position in the input of the match at grouped position k.
+  int original(int k) const { return original_[k]; }
+
+  // Centred pixels of a group.
+  PixelArrays Pixels(const MatchGroup& group) const;
+
+  // Directions of a group's rays.
+  RayArrays Directions(const MatchGroup& group) const;
+
+  // What the depths of a group depend on under `pose`; they are undecided below DecidedParallax().
+  GroupMotion MotionOf(const MatchGroup& group, const Pose& pose, double threshold_px) const;
+
+  // The group's centred fundamental matrix under `pose`.
+  Eigen::Matrix3d Fundamental(const MatchGroup& group, const Pose& pose) const;
+
+  // MSAC score: sum min(r^2, threshold^2) of the Sampson errors, pixels^2. Once it exceeds `bound`
+  // the rest is not looked at: the value returned is then above `bound`, but not the score.
+  // With a `loss` table the sum is of that loss. `num_inliers` may be null: counting takes time.
+  double Score(const Pose& pose, double threshold_px, double bound, int* num_inliers,
+               const LossTable* loss = nullptr) const;
+
+  // The same where a match that lies behind a camera counts as an outlier too. An outlier far from
+  // where its point could be has much leverage, and half of those that an estimate could bend
+  // to would lie behind a camera. Never below Score(), to the last bit.
+  double ScoreInFront(const Pose& pose, double threshold_px, double bound, int* num_inliers,
+                      const LossTable* loss = nullptr) const;
+
+  // 1 for matches of a Sampson error below the threshold that do not lie behind a camera, else 0,
+  // in grouped order; returns their number. `errors` gets the squared Sampson errors. Both are
+  // resized.
+  int SelectInliers(const Pose& pose, double threshold_px, std::vector<double>* errors,
+                    std::vector<char>* inliers) const;
+
+  // The rays of the match at grouped position k in the body frames.
+  RayPair rays(int k) const;
+
+  // A sine of parallax in the match's group that noise of this threshold cannot make.
+  double DecidedParallax(const MatchGroup& group, double threshold_px) const;
+
+  // Squared Sampson errors in grouped order, pixels^2; `errors` is resized.
+  void SquaredErrors(const Pose& pose, std::vector<double>* errors) const;
+
+ private:
+  // Where `count` stretches of the order begin, and the end.
+  std::vector<size_t> StretchBegins(size_t count) const;
+  GroupedMatches Subset(const std::vector<size_t>& taken) const;
+
+  Rig rig_;
+  std::vector<MatchGroup> groups_;
+  std::vector<Match> matches_;
+  std::vector<int> original_;
+  std::vector<Eigen::Matrix3d> unproject_;  // of each camera
+  // x1 of all, then y1, x2, y2; the six coordinates of the directions likewise.
+  std::vector<double> pixels_, directions_;
+};
+
+}  // namespace rigel
+
+#endif  // RIGEL_CORE_GROUPED_MATCHES_H_

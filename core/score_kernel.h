@@ -1,0 +1,101 @@
+// The inner loops of RANSAC: Sampson errors and cheirality of many matches of one camera pair.
+//
+// Plain loops over structure-of-arrays data, in a file of their own; every path gives the same bits
+// (cpu_path.h).
+#ifndef RIGEL_CORE_SCORE_KERNEL_H_
+#define RIGEL_CORE_SCORE_KERNEL_H_
+
+#include "rigel/core/cpu_path.h"
+
+namespace rigel {
+
+// The arrays below are read beyond their last element up to a multiple of this: memory of the
+// caller's, of any content. Whole vectors only, and no copy of the last few.
+inline constexpr int kKernelPadding = 8;
+
+// Matches of one camera pair in centred pixels (epipolar.h): (x1, y1) at time 1, (x2, y2) at
+// time 2.
+struct PixelArrays {
+  const double* x1;
+  const double* y1;
+  const double* x2;
+  const double* y2;
+  int size;
+};
+
+// Unit directions of their rays in the body frames.
+struct RayArrays {
+  const double* x1;
+  const double* y1;
+  const double* z1;
+  const double* x2;
+  const double* y2;
+  const double* z2;
+};
+
+// What depths of one camera pair depend on.
+struct GroupMotion {
+  double R[9];            // row-major
+  double b[3];            // R s_i + t - s_j, metres
+  double min_sin2 = 0.0;  // of the parallax: below it noise decides the depths
+};
+
+// A loss of r^2 in [0, t2], rising from 0 to t2: its values at k t2 / kBins, and linear between
+// them.
+struct LossTable {
+  static constexpr int kBins = 64;
+  double values[kBins + 2];  // the last two are t2
+};
+
+// That of MAGSAC++ (Barath et al. 2020, eq. 6) for residuals of one dimension, scaled to t2 at
+// r^2 = t2.
+LossTable MagsacTable(double t2);
+
+// Adds sum min(r^2, t2) over the matches to `sum` and returns it, where r is the Sampson error in
+// pixels under the row-major centred fundamental matrix F; `num_inliers`, unless null, grows by the
+// number of matches with r^2 < t2. A match with r = 0/0 (F = 0, an epipole) counts t2. Stops once
+// the sum exceeds `bound`: what is returned below or at it is complete, and as no term is negative
+// the complete sum is never below what is returned.
+//
+// With a `loss` table, each term is that loss of r^2 instead.
+double TruncatedSampsonSum(const PixelArrays& pixels, const double F[9], double t2, double bound,
+                           double sum, int* num_inliers, CpuPath path = BestCpuPath(),
+                           const LossTable* loss = nullptr);
+
+// The same where matches behind a camera count t2 too (TestCheirality() in cheirality.h says
+// kBehind or kMixed). In the same order: never below the sum above, to the last bit.
+double TruncatedSampsonSumInFront(const PixelArrays& pixels, const RayArrays& rays,
+                                  const double F[9], const GroupMotion& motion, double t2,
+                                  double bound, double sum, int* num_inliers,
+                                  CpuPath path = BestCpuPath(), const LossTable* loss = nullptr);
+
+// Squared Sampson errors one by one; infinite where r = 0/0.
+void SquaredSampsonErrors(const PixelArrays& pixels, const double F[9], double* squared_errors,
+                          CpuPath path = BestCpuPath());
+
+// The same, and 1 where the error is below t2 and the match does not lie behind a camera, else 0;
+// returns the number of ones.
+int SelectInFront(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
+                  const GroupMotion& motion, double t2, double* squared_errors, char* inliers,
+                  CpuPath path = BestCpuPath());
+
+// Squared sines of the parallax: of the angle between the rays of each match once the first is
+// turned by the row-major rotation R.
+void SquaredParallax(const RayArrays& rays, const double R[9], int size, double* sin2,
+                     CpuPath path = BestCpuPath());
+
+// Where the matches with r^2 < t2 lie: kInFront, kBehind, and both with kMixed, which are decided.
+struct DepthCounts {
+  int in_front = 0;
+  int behind = 0;
+  int decided = 0;
+};
+
+// Adds those of a group.
+void CountDepths(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
+                 const GroupMotion& motion, double t2, DepthCounts* counts,
+                 CpuPath path = BestCpuPath());
+
+}  // namespace rigel
+
+#endif  // RIGEL_CORE_SCORE_KERNEL_H_

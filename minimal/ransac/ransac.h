@@ -1,0 +1,345 @@
+// RANSAC over a solver concept: it knows how to draw, solve and score, and nothing of geometry.
+//
+// MSAC, MAGSAC++ or inlier-count score, samples as the solver draws them (PROSAC: prosac.h), the
+// number of iterations adapts to the share of inliers, scoring stops early once a hypothesis can no
+// longer win or is too unlikely to, the best hypothesis of the first min_iterations and each better
+// one after them is locally optimized, and in the end the best ones of a looser score (finalists).
+// Deterministic: the seed fixes the result.
+#ifndef RIGEL_MINIMAL_RANSAC_RANSAC_H_
+#define RIGEL_MINIMAL_RANSAC_RANSAC_H_
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "rigel/core/pixel_unit.h"
+#include "rigel/core/random.h"
+#include "rigel/core/stop.h"
+
+namespace rigel {
+
+inline constexpr int kMaxFinalists = 16;
+inline constexpr int kMaxRedraws = 10;
+
+enum class ScoreKind {
+  kMsac,    // sum min(r^2, threshold^2), Torr and Zisserman 2000
+  kMagsac,  // MAGSAC++, Barath et al. 2020: the noise level marginalized up to the threshold
+  // Number of matches that are no inliers, as of Fischler and Bolles 1981: of hypotheses with as
+  // many inliers the first wins. For comparisons with published figures; it never stops early.
+  kInlierCount,
+};
+
+struct RansacOptions {
+  // In 1e-12 to 1e12; 3 sigma keeps the estimate efficient. kAutoThresholdPx: 1.5, or 1/300 of the
+  // shortest focal length where that is less; for EstimateMotion(), which resolves it.
+  double threshold_px = kAutoThresholdPx;
+  double confidence = 0.9999;  // in (0, 1): that one sample of inliers was drawn
+  int max_iterations = 10000;  // >= 1
+  // At least so many: noise makes most samples of inliers poor hypotheses.
+  int min_iterations = 100;  // >= 0
+  bool local_optimization = true;
+  // Samples from the matches of best score first, where they have scores.
+  bool prosac = true;
+  // Scoring stops where a hypothesis can no longer win. Changes the time alone.
+  bool early_termination = true;
+  // A hypothesis is left where some of the matches say that it can hardly win (bail-out test, Capel
+  // 2005): of those that would, at most one in a thousand is lost. For scores that are sums.
+  bool bail_out = true;
+  ScoreKind score = ScoreKind::kMsac;
+  // Draws again where two matches of a sample lie within min_sample_distance_px of one another:
+  // such samples say little. At most kMaxRedraws times.
+  bool spread_samples = false;
+  double min_sample_distance_px = 30.0;  // >= 0
+  // After the loop, so many hypotheses are locally optimized that do best at a loose threshold and
+  // differ from one another and from the best: where the prior is off, no minimal hypothesis fits
+  // well at the threshold, and the one that fits best may be far from the truth. 0 to
+  // kMaxFinalists.
+  int num_finalists = 4;
+  // Of more matches than these, hypotheses are scored on so many, drawn evenly over their order:
+  // they tell good from bad as well as all do, and time stays bounded. The samples come from all.
+  int max_scored = 4096;  // >= 1
+  // The loop ends once its work, counted and not timed, so that the result is the same on every
+  // machine, would have taken about so long on one core of 2020. At the defaults only
+  // 6pt-stewenius, and rigs with thousands of camera pairs, come to that before max_iterations.
+  double max_work_us = 1.5e6;  // > 0; may be infinite
+  uint64_t seed = 1;
+
+  bool IsValid(std::string* error) const;
+};
+
+template <class Model>
+struct RansacResult {
+  bool found = false;
+  Model best;          // after local optimization
+  double score = 0.0;  // of `best`
+  int num_inliers = 0;
+  // The best-scoring minimal hypothesis of the run, before any optimization.
+  Model best_minimal;
+  double minimal_score = 0.0;
+  int iterations = 0;
+  int64_t hypotheses = 0;
+  double work_us = 0.0;  // see RansacOptions::max_work_us
+};
+
+// What Ransac() asks of a solver. All methods are const; the solver owns the data.
+//   Model, Solutions           a motion, and a list of them with size() and operator[]
+//   num_data(), sample_size()
+//   Draw(Random*, int*)        false if no sample can be drawn
+//   MinimalSolver(sample, Solutions*)   number of solutions
+//   Work(num_solutions)        nominal microseconds of a sample and of scoring its solutions
+//   QuickScore(model, bound)   not above Score() of the model Admit() makes of it; may stop early
+//                              above `bound`
+//   BailsOut(model, best)      true if it is very unlikely that QuickScore() is below `best`
+//   Admit(Model*)              false if physically impossible; may change the sign of t
+//   Score(model, bound, int* inliers)   lower is better; may stop early above `bound`
+//   LocalOptimize(Model*)      false: unchanged
+//   LooseScore(model, bound)   lower is better, at a loose threshold, cheap; may stop above `bound`
+//   OptimizeLoosely(Model*)    local optimization from a model that is far off; false: no model
+//   Similar(model, model)      true if optimizing both is likely to end in one place
+template <class S, class = void>
+struct IsRansacSolver : std::false_type {};
+template <class S>
+struct IsRansacSolver<
+    S,
+    std::void_t<
+        typename S::Model, typename S::Solutions,
+        decltype(double{
+            std::declval<const S&>().LooseScore(std::declval<const typename S::Model&>(), 0.0)}),
+        decltype(
+            bool{std::declval<const S&>().OptimizeLoosely(std::declval<typename S::Model*>())}),
+        decltype(bool{std::declval<const S&>().Similar(std::declval<const typename S::Model&>(),
+                                                       std::declval<const typename S::Model&>())}),
+        decltype(int{std::declval<const S&>().num_data()}),
+        decltype(int{std::declval<const S&>().sample_size()}),
+        decltype(
+            bool{std::declval<const S&>().Draw(std::declval<Random*>(), std::declval<int*>())}),
+        decltype(int{std::declval<const S&>().MinimalSolver(
+            std::declval<const int*>(), std::declval<typename S::Solutions*>())}),
+        decltype(double{std::declval<const S&>().Work(0)}),
+        decltype(double{
+            std::declval<const S&>().QuickScore(std::declval<const typename S::Model&>(), 0.0)}),
+        decltype(
+            bool{std::declval<const S&>().BailsOut(std::declval<const typename S::Model&>(), 0.0)}),
+        decltype(double{std::declval<const S&>().Score(std::declval<const typename S::Model&>(),
+                                                       0.0, std::declval<int*>())}),
+        decltype(bool{std::declval<const S&>().Admit(std::declval<typename S::Model*>())}),
+        decltype(bool{std::declval<const S&>().LocalOptimize(std::declval<typename S::Model*>())})>>
+    : std::true_type {};
+
+// Iterations after which, with probability `confidence`, a sample of inliers only has been drawn.
+inline int IterationsNeeded(double inlier_ratio, int sample_size, double confidence,
+                            int max_iterations) {
+  const double good = std::pow(std::clamp(inlier_ratio, 0.0, 1.0), sample_size);
+  if (!(good > 0.0)) return max_iterations;
+  if (good >= 1.0) return 1;
+  const double n = std::log1p(-confidence) / std::log1p(-good);
+  return n < max_iterations ? std::max(1, static_cast<int>(std::ceil(n))) : max_iterations;
+}
+
+namespace ransac_internal {
+
+// The best hypotheses so far of which no two are similar, best first.
+template <class Model>
+struct Finalists {
+  struct Item {
+    Model model;
+    double score;
+  };
+  Item items[kMaxFinalists];
+  int size = 0;
+
+  template <class Solver>
+  void Add(const Solver& solver, const Model& model, double score, int capacity) {
+    // A similar one that is better makes this one superfluous; similar ones that are worse go.
+    int kept = 0;
+    for (int k = 0; k < size; ++k) {
+      const bool similar = solver.Similar(items[k].model, model);
+      if (similar && items[k].score <= score) return;
+      if (!similar) items[kept++] = items[k];
+    }
+    size = kept;
+    if (size == capacity) {
+      if (!(score < items[size - 1].score)) return;
+      --size;
+    }
+    int k = size++;
+    for (; k > 0 && items[k - 1].score > score; --k) items[k] = items[k - 1];
+    items[k] = {model, score};
+  }
+
+  double Worst(int capacity) const {
+    return size == capacity ? items[size - 1].score : std::numeric_limits<double>::infinity();
+  }
+};
+
+}  // namespace ransac_internal
+
+// A run that can be stopped and gone on with, so that several share one budget of iterations. How
+// they are divided does not change what they find. All that is passed must outlive the run;
+// `options` must be valid. `stop` (may be null) is asked before each iteration; what was found by
+// then is the result. No heap allocation but what the solver's methods make.
+template <class Solver>
+class RansacRun {
+ public:
+  static_assert(IsRansacSolver<Solver>::value, "Solver lacks a method: see IsRansacSolver");
+  using Model = typename Solver::Model;
+
+  RansacRun(const Solver& solver, const RansacOptions& options,
+            typename Solver::Solutions* solutions, Stop* stop = nullptr)
+      : solver_(solver),
+        options_(options),
+        solutions_(solutions),
+        stop_(stop),
+        random_(options.seed),
+        capacity_(options.local_optimization ? options.num_finalists : 0),
+        needed_(options.max_iterations) {
+    result_.score = kInfinity;
+    result_.minimal_score = kInfinity;
+  }
+
+  // At most so many iterations more; returns how many they were, fewer if the run was done.
+  int Advance(int iterations) {
+    const int before = result_.iterations;
+    const int end = before + std::min(iterations, options_.max_iterations - before);
+    while (result_.iterations < end && !Done() && !Stopped()) Iterate();
+    return result_.iterations - before;
+  }
+
+  // A sample of inliers was drawn with the confidence asked for, or there is none, or the work is
+  // used up.
+  bool Done() const {
+    return exhausted_ || !(result_.work_us < options_.max_work_us) ||
+           result_.iterations >=
+               std::min(options_.max_iterations, std::max(needed_, options_.min_iterations));
+  }
+
+  // Optimizes the best hypothesis and the finalists: at the end, or to see how good they are.
+  void OptimizeFinalists() {
+    OptimizeBest();
+    if (Stopped()) return;
+    // From the best one too: few matches of large parallax may be out of its reach.
+    const Model best = result_.best;
+    constexpr int kMaxWorse = 2;
+    int num_worse = 0;
+    for (int k = capacity_ > 0 ? -1 : 0; k < finalists_.size && result_.found; ++k) {
+      Model model = k < 0 ? best : finalists_.items[k].model;
+      if ((k >= 0 && solver_.Similar(model, best)) || !solver_.OptimizeLoosely(&model)) continue;
+      int inliers = 0;
+      const double before = result_.score;
+      const double score = FullScore(model, result_.score, &inliers);
+      KeepBest(model, score, inliers);
+      // Where the best two finalists end no better, the others would not either.
+      if (k >= 0 && !(result_.score < before) && ++num_worse == kMaxWorse) break;
+    }
+  }
+
+  const RansacResult<Model>& result() const { return result_; }
+
+ private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  bool Stopped() const { return stop_ != nullptr && stop_->Asked(); }
+
+  double Bound(double score) const { return options_.early_termination ? score : kInfinity; }
+
+  bool CountsInliers() const { return options_.score == ScoreKind::kInlierCount; }
+
+  double FullScore(const Model& model, double limit, int* inliers) const {
+    if (!CountsInliers()) return solver_.Score(model, limit, inliers);
+    solver_.Score(model, kInfinity, inliers);
+    return solver_.num_data() - *inliers;
+  }
+
+  void KeepBest(const Model& model, double score, int inliers) {
+    if (!(score < result_.score)) return;
+    result_.best = model;
+    result_.score = score;
+    result_.num_inliers = inliers;
+    needed_ = IterationsNeeded(inliers / static_cast<double>(solver_.num_data()),
+                               solver_.sample_size(), options_.confidence, options_.max_iterations);
+  }
+
+  void OptimizeBest() {
+    if (optimized_ || !options_.local_optimization) return;
+    optimized_ = true;
+    Model model = result_.best_minimal;
+    if (!solver_.LocalOptimize(&model)) return;
+    int inliers = 0;
+    const double score = FullScore(model, result_.score, &inliers);
+    KeepBest(model, score, inliers);
+  }
+
+  void Iterate() {
+    ++result_.iterations;
+    int sample[64];
+    if (!solver_.Draw(&random_, sample)) {
+      exhausted_ = true;
+      return;
+    }
+    solver_.MinimalSolver(sample, solutions_);
+    result_.work_us += solver_.Work(static_cast<int>(solutions_->size()));
+    for (int k = 0; k < static_cast<int>(solutions_->size()); ++k) {
+      ++result_.hypotheses;
+      Judge((*solutions_)[k]);
+    }
+    // Before, a better hypothesis would soon make the optimization of this one superfluous.
+    if (result_.iterations == options_.min_iterations) OptimizeBest();
+  }
+
+  void Judge(Model model) {
+    if (capacity_ > 0) {
+      const double loose = solver_.LooseScore(model, Bound(finalists_.Worst(capacity_)));
+      if (loose < finalists_.Worst(capacity_)) finalists_.Add(solver_, model, loose, capacity_);
+    }
+    if (options_.bail_out && !CountsInliers() && result_.found &&
+        solver_.BailsOut(model, result_.minimal_score)) {
+      return;
+    }
+    // Also false for NaN. The quick score never rejects a winner; of a count there is none.
+    if (!CountsInliers() &&
+        !(solver_.QuickScore(model, Bound(result_.minimal_score)) < result_.minimal_score)) {
+      return;
+    }
+    if (!solver_.Admit(&model)) return;
+    int inliers = 0;
+    const double score = FullScore(model, Bound(result_.minimal_score), &inliers);
+    if (!(score < result_.minimal_score)) return;
+    result_.found = true;
+    result_.best_minimal = model;
+    result_.minimal_score = score;
+    KeepBest(model, score, inliers);
+    optimized_ = false;
+    if (result_.iterations > options_.min_iterations) OptimizeBest();
+  }
+
+  const Solver& solver_;
+  const RansacOptions& options_;
+  typename Solver::Solutions* solutions_;
+  Stop* stop_;
+  Random random_;
+  const int capacity_;  // of the finalists
+  ransac_internal::Finalists<Model> finalists_;
+  RansacResult<Model> result_;
+  int needed_;              // iterations
+  bool optimized_ = true;   // the best minimal hypothesis
+  bool exhausted_ = false;  // there is no sample
+};
+
+// A whole run. `options` must be valid.
+template <class Solver>
+RansacResult<typename Solver::Model> Ransac(const Solver& solver, const RansacOptions& options,
+                                            typename Solver::Solutions* solutions,
+                                            Stop* stop = nullptr) {
+  RansacRun<Solver> run(solver, options, solutions, stop);
+  run.Advance(options.max_iterations);
+  run.OptimizeFinalists();
+  return run.result();
+}
+
+}  // namespace rigel
+
+#endif  // RIGEL_MINIMAL_RANSAC_RANSAC_H_

@@ -1,0 +1,50 @@
+// Random samples for RANSAC, spread over the cameras.
+#ifndef RIGEL_MINIMAL_RANSAC_SAMPLER_H_
+#define RIGEL_MINIMAL_RANSAC_SAMPLER_H_
+
+#include <vector>
+
+#include "rigel/core/grouped_matches.h"
+#include "rigel/core/random.h"
+
+namespace rigel {
+
+// Which matches a solver's sample may hold.
+enum class SampleKind {
+  // Any. A sample from one camera pair says nothing about scale, so where there are several pairs
+  // the first two matches come from different ones.
+  kSpread,
+  // All of one camera, the same at both times.
+  kOneCamera,
+  // All but the last of one camera pair, the last from another where there is one.
+  kOnePairPlusOne,
+};
+
+// Every loop is bounded.
+class Sampler {
+ public:
+  // `groups` are those of the grouped matches that the indices refer to.
+  Sampler(const std::vector<MatchGroup>& groups, SampleKind kind, int sample_size);
+
+  // The same for other groups, which may be empty. No heap if there are no more than before.
+  void Set(const std::vector<MatchGroup>& groups, SampleKind kind, int sample_size);
+
+  // False if the matches allow no sample at all.
+  bool CanDraw() const { return can_draw_; }
+
+  // Distinct indices, as many as the sample size. False if there is no sample.
+  bool Draw(Random* random, int* sample) const;
+
+ private:
+  std::vector<MatchGroup> groups_;   // with matches
+  std::vector<MatchGroup> allowed_;  // groups that can fill the part of one camera pair
+  int num_matches_ = 0;
+  int num_allowed_ = 0;  // matches in them
+  SampleKind kind_ = SampleKind::kSpread;
+  int sample_size_ = 0;
+  bool can_draw_ = false;
+};
+
+}  // namespace rigel
+
+#endif  // RIGEL_MINIMAL_RANSAC_SAMPLER_H_

@@ -1,0 +1,23 @@
+#include "rigel/minimal/solvers/four_point.h"
+
+#include "rigel/minimal/numerics/polynomial.h"
+#include "rigel/minimal/solvers/depth_system.h"
+
+namespace rigel {
+
+int Solve4pt(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
+  solutions->clear();
+  DepthSystem<RotationModel::kExact> system;
+  system.SetFourPoint(matches, sample);
+  double c[7];
+  double roots[6];
+  const int degree = system.Determinant(c);
+  const int num_roots = degree == 0   ? 0
+                        : degree <= 4 ? RealRoots<4>(c, roots)
+                        : degree == 5 ? RealRoots<5>(c, roots)
+                                      : RealRoots<6>(c, roots);
+  for (int k = 0; k < num_roots; ++k) system.AddSolution(matches, roots[k], solutions);
+  return solutions->size();
+}
+
+}  // namespace rigel

@@ -1,0 +1,293 @@
+#include "rigel/problems/benchmarks/solver_benchmark.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <numeric>
+#include <string_view>
+
+#include <Eigen/LU>
+#include <nlohmann/json.hpp>
+
+#include "rigel/core/angles.h"
+#include "rigel/core/metrics.h"
+#include "rigel/core/random.h"
+#include "rigel/core/statistics.h"
+#include "rigel/problems/io/report_json.h"
+#include "rigel/problems/io/table.h"
+#include "rigel/problems/scenes/synthetic.h"
+
+namespace rigel {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Shorter intervals would measure the clock.
+constexpr double kBatchMicroseconds = 50.0;
+
+struct Problem {
+  FramePair pair;
+  PreparedMatches matches;
+  std::vector<int> sample;
+};
+
+double MicrosecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+// Times run(k) for k = 0..n-1 in batches, each once before to fill the caches; microseconds a call.
+template <class Run>
+std::vector<double> TimeBatches(int n, const Run& run) {
+  // The size of a batch from a trial run.
+  const auto trial_start = Clock::now();
+  int calls = 0;
+  while (MicrosecondsSince(trial_start) < 20 * kBatchMicroseconds) run(calls++ % n);
+  const double estimate = MicrosecondsSince(trial_start) / calls;
+  const int size =
+      std::clamp(static_cast<int>(std::ceil(1.5 * kBatchMicroseconds / estimate)), 1, n);
+  const int repeats =
+      std::max(1, static_cast<int>(std::ceil(1.5 * kBatchMicroseconds / (estimate * size))));
+  std::vector<double> times;
+  for (int begin = 0; begin + size <= n; begin += size) {
+    for (int k = begin; k < begin + size; ++k) run(k);
+    const auto start = Clock::now();
+    for (int r = 0; r < repeats; ++r) {
+      for (int k = begin; k < begin + size; ++k) run(k);
+    }
+    times.push_back(MicrosecondsSince(start) / (size * repeats));
+  }
+  return times;
+}
+
+std::string ProcessorName() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const size_t colon = line.find(": ");
+    if (line.rfind("model name", 0) == 0 && colon != std::string::npos) {
+      return line.substr(colon + 2);
+    }
+  }
+  return "unknown processor";
+}
+
+std::vector<Problem> MakeProblems(const SolverInfo& solver, const SolverBenchmarkOptions& options,
+                                  bool inter) {
+  SceneOptions scene;
+  scene.num_cameras = options.num_cameras;
+  // Alternating cameras, but where the solver wants its sample from one pair: then a sampler picks
+  // it.
+  const bool any_sample = solver.sampling == SampleKind::kSpread;
+  scene.num_matches = any_sample ? solver.sample_size : 4 * solver.sample_size;
+  scene.noise_px = 0.0;
+  scene.rotation_deg = options.rotation_deg;
+  scene.motion = MotionPattern::kRandom;
+  if (options.random_axis) scene.rotation_axis = RotationAxisPattern::kRandom;
+  if (solver.prior == PriorKind::kPlanar) {
+    scene.motion = MotionPattern::kPlanar;
+    scene.rotation_axis = RotationAxisPattern::kY;
+  }
+  scene.inter_share = inter ? 1.0 : 0.0;
+  scene.seed = options.seed;
+  std::vector<Problem> problems;
+  problems.reserve(options.trials);
+  for (int k = 0; static_cast<int>(problems.size()) < options.trials && k < 2 * options.trials;
+       ++k) {
+    Problem problem;
+    std::string error;
+    Alignment alignment;
+    // A rig turned so that a large motion leaves nothing in view is no problem to solve.
+    if (!MakeScenePair(scene, k, &problem.pair, &error)) continue;
+    // Its motion model is part of the prior: a circle, the chord at half the angle, forwards.
+    if (std::string_view(solver.name) == "2pt-ackermann") {
+      Pose truth = *problem.pair.truth;
+      truth.t = -(RotationY(DegToRad(0.5 * options.rotation_deg)) * Eigen::Vector3d::UnitZ());
+      if (!MakeScenePair(scene, k, truth, &problem.pair, &error)) continue;
+      problem.pair.prior.normal = Eigen::Vector3d::UnitY();
+      problem.pair.prior.forward = Eigen::Vector3d::UnitZ();
+    }
+    if (!MakeAlignment(problem.pair.prior, solver.prior, &alignment, &error)) continue;
+    problem.sample.resize(solver.sample_size);
+    if (any_sample) {
+      std::iota(problem.sample.begin(), problem.sample.end(), 0);
+    } else {
+      const GroupedMatches grouped(problem.pair.rig, problem.pair.matches);
+      problem.pair.matches = grouped.matches();
+      Random random = Random::Stream(options.seed, static_cast<uint64_t>(k));
+      const Sampler sampler(grouped.groups(), solver.sampling, solver.sample_size);
+      if (!sampler.Draw(&random, problem.sample.data())) continue;
+    }
+    problem.matches.Set(problem.pair.rig, problem.pair.matches, alignment);
+    problems.push_back(std::move(problem));
+  }
+  return problems;
+}
+
+SolverBenchmarkRow BenchmarkRow(const SolverInfo& solver, const SolverBenchmarkOptions& options,
+                                bool inter) {
+  SolverBenchmarkRow row;
+  row.solver = solver.name;
+  row.matches = inter ? "inter" : "intra";
+  std::vector<Problem> problems = MakeProblems(solver, options, inter);
+  const int n = static_cast<int>(problems.size());
+  if (n == 0) return row;
+
+  Solutions solutions;
+  std::vector<double> rotations, directions;
+  int found_truth = 0, found_direction = 0, failures = 0;
+  double num_solutions = 0;
+  for (const Problem& problem : problems) {
+    solver.solve(problem.matches, problem.sample.data(), &solutions);
+    num_solutions += solutions.size();
+    failures += solutions.empty() ? 1 : 0;
+    double rotation = std::numeric_limits<double>::infinity();
+    double direction = std::numeric_limits<double>::infinity();
+    bool both = false;
+    for (const Solution& solution : solutions) {
+      const double r = RotationError(problem.pair.truth->R, solution.R);
+      const double d = TranslationDirectionError(problem.pair.truth->t, solution.t);
+      if (r < rotation) {
+        rotation = r;
+        direction = d;
+      }
+      both = both || (r < kFoundRotation && d < kFoundDirection);
+    }
+    found_truth += rotation < kFoundRotation ? 1 : 0;
+    found_direction += both ? 1 : 0;
+    if (std::isfinite(rotation)) rotations.push_back(RadToDeg(rotation));
+    if (std::isfinite(direction)) directions.push_back(RadToDeg(direction));
+  }
+  row.solutions = num_solutions / n;
+  row.failures = failures / static_cast<double>(n);
+  row.found_direction = found_direction / static_cast<double>(n);
+  row.found_truth =
+      options.rotation_deg == 0.0 ? row.found_direction : found_truth / static_cast<double>(n);
+  if (const auto s = ComputeStatistics(rotations)) row.rotation_deg = s->median;
+  if (const auto s = ComputeStatistics(directions)) row.translation_dir_deg = s->median;
+
+  // Right before and after, as the clock of a shared machine changes.
+  const double reference_before = ReferenceKernelMicroseconds();
+  const std::vector<double> times = TimeBatches(
+      n, [&](int k) { solver.solve(problems[k].matches, problems[k].sample.data(), &solutions); });
+  if (const auto s = ComputeStatistics(times)) {
+    row.mean_us = s->mean;
+    row.median_us = s->median;
+  }
+  row.spread_us = QuartileDistance(times);
+  const double reference = 0.5 * (reference_before + ReferenceKernelMicroseconds());
+  if (reference > 0) row.ratio = row.median_us / reference;
+
+  const std::vector<double> prepare = TimeBatches(n, [&](int k) {
+    problems[k].matches.Set(problems[k].pair.rig, problems[k].pair.matches,
+                            problems[k].matches.alignment());
+  });
+  if (const auto s = ComputeStatistics(prepare)) {
+    row.prepare_us = s->median / static_cast<double>(problems[0].pair.matches.size());
+  }
+  return row;
+}
+
+}  // namespace
+
+double ReferenceKernelMicroseconds() {
+  constexpr int kProblems = 20000;  // some 25 batches
+  std::vector<Eigen::Matrix4d> matrices;
+  Random random(7);
+  for (int k = 0; k < kProblems; ++k) {
+    Eigen::Matrix4d m;
+    for (int i = 0; i < 16; ++i) m(i) = random.Normal();
+    matrices.push_back(m);
+  }
+  const Eigen::Vector4d right(1, 2, 3, 4);
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  const std::vector<double> times =
+      TimeBatches(kProblems, [&](int k) { sum += matrices[k].partialPivLu().solve(right); });
+  const auto statistics = ComputeStatistics(times);
+  // The sum is looked at, so that the work is not optimized away.
+  return statistics && std::isfinite(sum.sum()) ? statistics->median : 0.0;
+}
+
+std::vector<SolverBenchmarkRow> BenchmarkSolver(const SolverInfo& solver,
+                                                const SolverBenchmarkOptions& options) {
+  std::vector<SolverBenchmarkRow> rows;
+  for (const bool inter : {false, true}) {
+    if (inter && (solver.sampling == SampleKind::kOneCamera || options.num_cameras < 2)) continue;
+    rows.push_back(BenchmarkRow(solver, options, inter));
+  }
+  return rows;
+}
+
+std::string PaperTable1(const std::vector<SolverBenchmarkRow>& rows) {
+  constexpr struct {
+    const char* solver;
+    double mean_us;
+    double median_us;
+  } kPaper[] = {{"17pt-li", 50.2704, 48},        {"6pt-stewenius", 3759.8892, 3744},
+                {"6pt-ventura", 57.4035, 53},    {"4pt-lee", 28.0242, 27},
+                {"4pt-liu", 8.2684, 7},          {"4pt-approx", 16.2423, 10},
+                {"4pt-axis-approx", 13.6533, 8}, {"3pt-approx", 18.6852, 12}};
+  Table table;
+  table.AddHeader({"Table 1 of the paper, us", "paper", "", "here", "", "times"});
+  table.AddHeader({"mean and median", "mean", "median", "mean", "median", "faster"});
+  bool any = false;
+  for (const auto& entry : kPaper) {
+    for (const SolverBenchmarkRow& row : rows) {
+      if (row.solver != entry.solver || row.matches != "intra" || !(row.median_us > 0)) continue;
+      any = true;
+      table.AddRow({row.solver, FormatNumber(entry.mean_us, 2), FormatNumber(entry.median_us, 0),
+                    FormatNumber(row.mean_us, 3), FormatNumber(row.median_us, 3),
+                    FormatNumber(entry.median_us / row.median_us, 0)});
+    }
+  }
+  if (!any) return "";
+  return table.Format() + "paper: AMD R9-7945HX 2.50 GHz; here: " + ProcessorName() + "\n";
+}
+
+std::string SolverBenchmarkTable(const std::vector<SolverBenchmarkRow>& rows) {
+  Table table(1);
+  table.AddHeader(
+      {"", "", " time", "[us]", "", "", " solu-", "no", "found", " best root", "[deg]"});
+  table.AddHeader({"solver", "sample", " mean", "median", "spread", "ratio", " tions", "sol.",
+                   "truth", " rotation", "direction"});
+  for (const SolverBenchmarkRow& row : rows) {
+    // The widths given keep it to 100 columns with the longest solver name.
+    table.AddRow({row.solver, row.matches, " " + FormatFitted(row.mean_us, 3, 5),
+                  FormatFitted(row.median_us, 3, 6), FormatFitted(row.spread_us, 3, 6),
+                  FormatFitted(row.ratio, 2, 5), " " + FormatNumber(row.solutions, 2),
+                  FormatNumber(row.failures, 3), FormatNumber(row.found_truth, 4),
+                  " " + FormatNumber(row.rotation_deg, 5),
+                  FormatNumber(row.translation_dir_deg, 4)});
+  }
+  return table.Format();
+}
+
+std::string SolverBenchmarkJson(const std::vector<SolverBenchmarkRow>& rows,
+                                const SolverBenchmarkOptions& options, double reference_us) {
+  nlohmann::ordered_json report = NewReport("rigel-benchmark 1");
+  report["options"] = {{"num_cameras", options.num_cameras},
+                       {"trials", options.trials},
+                       {"rotation_deg", options.rotation_deg},
+                       {"random_axis", options.random_axis},
+                       {"seed", options.seed}};
+  report["reference_us"] = reference_us;
+  report["solvers"] = nlohmann::ordered_json::array();
+  for (const SolverBenchmarkRow& row : rows) {
+    report["solvers"].push_back({{"solver", row.solver},
+                                 {"matches", row.matches},
+                                 {"mean_us", row.mean_us},
+                                 {"median_us", row.median_us},
+                                 {"spread_us", row.spread_us},
+                                 {"ratio", row.ratio},
+                                 {"solutions", row.solutions},
+                                 {"failures", row.failures},
+                                 {"found_truth", row.found_truth},
+                                 {"found_direction", row.found_direction},
+                                 {"rotation_deg", row.rotation_deg},
+                                 {"translation_dir_deg", row.translation_dir_deg},
+                                 {"prepare_us", row.prepare_us}});
+  }
+  return JsonText(report, 2) + "\n";
+}
+
+}  // namespace rigel

@@ -1,0 +1,291 @@
+// Tables, JSON and CSV of rigel_estimate.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "rigel/core/angles.h"
+#include "rigel/problems/evaluation/report.h"
+#include "rigel/problems/io/csv.h"
+#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
+#include "rigel/problems/io/report_json.h"
+#include "rigel/problems/io/table.h"
+
+namespace rigel {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The end of a path that tells the pairs of a directory apart, on one line whatever it holds.
+std::string ShortName(const std::string& name) {
+  const size_t slash = name.find_last_of('/');
+  std::string text = slash == std::string::npos ? name : name.substr(slash + 1);
+  if (IsMatchFileName(text)) text.resize(text.rfind(".matches"));
+  constexpr size_t kWidth = 16;
+  return Shortened(PrintablePath(text), kWidth);
+}
+
+bool DirectionKnown(const MotionEstimate& e) { return e.refine.translation_observable; }
+
+// "R" rotation, "t" direction of translation, "s" scale; "-" where it is not observable.
+std::string ObservableLetters(const RefineSummary& refine) {
+  return std::string(refine.rotation_observable ? "R" : "-") +
+         (refine.translation_observable ? "t" : "-") + (refine.scale_observable ? "s" : "-");
+}
+
+Json MotionJson(const Pose& pose) {
+  const Eigen::Quaterniond q = pose.Quaternion();
+  return {{"q_wxyz", {q.w(), q.x(), q.y(), q.z()}}, {"t", {pose.t.x(), pose.t.y(), pose.t.z()}}};
+}
+
+// Three digits, of small ones in powers of ten.
+std::string ResidualText(double px) {
+  constexpr double kLeast = 5e-4;
+  if (!(px > 0.0) || px >= kLeast) return FormatFitted(px, 3, 5);
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.0e", px);
+  return text;
+}
+
+// What became of the solvers of auto: of the last ones nothing, mostly.
+Json TrialsJson(const std::vector<SolverTrial>& trials) {
+  Json entries = Json::array();
+  for (const SolverTrial& trial : trials) {
+    if (trial.iterations == 0 && trial.note == kNotNeeded) continue;
+    entries.push_back({{"solver", trial.solver},
+                       {"iterations", trial.iterations},
+                       {"inliers", trial.num_inliers},
+                       {"note", trial.note}});
+  }
+  return entries;
+}
+
+void PutFinite(const char* key, double value, Json* object) {
+  if (std::isfinite(value) && value >= 0) (*object)[key] = value;
+}
+
+}  // namespace
+
+std::string EstimateTable(const EstimateReport& report) {
+  const std::vector<FramePair>& pairs = report.pairs;
+  // The widths given keep it to 100 columns.
+  Table table(1);
+  table.AddHeader(
+      {"pair", "status", "angle", "sd", "direction", "of t", "", "sd", "|t|", "inl", "res", "obs"});
+  table.AddHeader({"", "", "[deg]", "[deg]", "x", "y", "z", "[deg]", "[m]", "", "[px]", ""});
+  bool any_unobservable = false;
+  bool any_not_asked = false;
+  for (size_t k = 0; k < pairs.size(); ++k) {
+    const MotionEstimate& e = report.estimates[k];
+    if (!e.HasMotion()) {
+      table.AddRow({ShortName(pairs[k].name), EstimateStatusName(e.status), "-", "-", "-", "-", "-",
+                    "-", "-", "-", "-", "-"});
+      continue;
+    }
+    const bool refined = e.refine.IsSolutionUsable();
+    // Where no refinement was asked for, nothing is known of what can be observed.
+    const bool stopped = e.stopped != StopReason::kNone;
+    const bool not_asked = (e.status == EstimateStatus::kSuccess && !refined) ||
+                           e.refine.termination == Termination::kStopped;
+    const bool rotation = not_asked || e.refine.rotation_observable;
+    const bool direction = not_asked || DirectionKnown(e);
+    const bool scale =
+        not_asked ? e.raw.has_scale && report.matches[k].any_inter : e.refine.scale_observable;
+    any_not_asked = any_not_asked || not_asked;
+    any_unobservable = any_unobservable || (!not_asked && (!direction || !scale));
+    const Eigen::Vector3d d = e.pose.t.normalized();
+    const auto sigma = [&](double radians) {
+      return refined && radians >= 0 ? FormatFitted(RadToDeg(radians), 3, 5) : std::string("-");
+    };
+    table.AddRow(
+        {ShortName(pairs[k].name),
+         stopped ? StopReasonName(e.stopped) : EstimateStatusName(e.status),
+         rotation ? FormatFitted(RadToDeg(LogSO3(e.pose.R).norm()), 3, 6) : "-",
+         rotation ? sigma(e.refine.rotation_sigma) : "-", direction ? FormatNumber(d.x(), 4) : "-",
+         direction ? FormatNumber(d.y(), 4) : "-", direction ? FormatNumber(d.z(), 4) : "-",
+         direction ? sigma(e.refine.direction_sigma) : "-",
+         scale ? FormatFitted(e.pose.t.norm(), 4, 6) : "-", std::to_string(e.num_inliers),
+         refined ? ResidualText(e.refine.median_residual_px) : "-",
+         refined ? ObservableLetters(e.refine) : "-"});
+  }
+  std::string text = table.Format();
+  if (any_unobservable) {
+    text +=
+        "\n\"-\": not observable, as the translation direction where |t| is consistent with zero; "
+        "or not\n"
+        "computed. "
+        "obs: R rotation, t direction of translation, s scale |t|.\n";
+  }
+  if (any_not_asked) {
+    text +=
+        "\n\"-\": not computed. Without a finished refinement it is not known what the matches "
+        "determine: "
+        "the "
+        "direction\nof t may mean nothing; |t| is left out where no match is between two "
+        "cameras.\n";
+  }
+  for (size_t k = 0; k < pairs.size(); ++k) {
+    const MotionEstimate& e = report.estimates[k];
+    // A motion that auto doubts: that of another solver is told on stderr.
+    if (e.HasMotion() && e.doubtful && e.trials.size() > 1) {
+      text += ShortName(pairs[k].name) + ": doubtful: " + e.doubt + "\n";
+    }
+    if (e.HasMotion() && e.refine.IsSolutionUsable() && !e.refine.translation_observable) {
+      text += ShortName(pairs[k].name) + ": " + e.refine.ObservabilityReport() + "\n";
+    }
+  }
+  return text;
+}
+
+std::vector<std::string> RigDoubtLines(const EstimateReport& report) {
+  struct Line {
+    RigDoubt first;
+    std::string pair;
+    int others = 0;
+  };
+  std::vector<Line> lines;
+  for (size_t k = 0; k < report.pairs.size(); ++k) {
+    for (const RigDoubt& doubt : report.estimates[k].rig_doubts) {
+      const auto same = std::find_if(lines.begin(), lines.end(), [&](const Line& line) {
+        return line.first.kind == doubt.kind && line.first.camera1 == doubt.camera1 &&
+               line.first.camera2 == doubt.camera2;
+      });
+      if (same != lines.end()) {
+        ++same->others;
+      } else {
+        lines.push_back({doubt, report.pairs[k].name, 0});
+      }
+    }
+  }
+  std::vector<std::string> texts;
+  for (const Line& line : lines) {
+    texts.push_back(PrintablePath(line.pair) + ": " + line.first.message +
+                    (line.others == 0 ? std::string()
+                                      : " (" + std::to_string(line.others + 1) + " files alike)"));
+  }
+  return texts;
+}
+
+std::string EstimateJson(const EstimateReport& report, bool times) {
+  const std::vector<FramePair>& pairs = report.pairs;
+  Json json = NewReport("rigel-estimate 1");
+  json["options"] = Json::object();
+  for (const auto& [name, value] : report.options) json["options"][name] = value;
+  // Pair by pair: a tree of many would be large.
+  std::string text = JsonText(json, 2);
+  text.resize(text.size() - 2);  // the line break and bracket of the end
+  text += ",\n  \"pairs\": [";
+  for (size_t k = 0; k < pairs.size(); ++k) {
+    const MotionEstimate& e = report.estimates[k];
+    Json entry;
+    entry["pair"] = pairs[k].name;
+    if (!pairs[k].sequence.empty()) entry["sequence"] = pairs[k].sequence;
+    entry["status"] = EstimateStatusName(e.status);
+    const bool stopped = e.stopped != StopReason::kNone;
+    if (e.status != EstimateStatus::kSuccess || stopped) entry["message"] = e.message;
+    if (stopped) entry["stopped"] = StopReasonName(e.stopped);
+    if (pairs[k].time1 && pairs[k].time2) entry["time"] = {*pairs[k].time1, *pairs[k].time2};
+    entry["matches"] = report.matches[k].all;
+    if (e.trials.size() > 1) entry["auto"] = TrialsJson(e.trials);
+    if (e.HasMotion()) {
+      entry["solver"] = e.solver;
+      entry["inliers"] = e.num_inliers;
+      entry["doubtful"] = e.doubtful;
+      if (e.doubtful) entry["reason"] = e.doubt;
+      entry["iterations"] = e.iterations;
+      if (times) entry["time_ms"] = {{"ransac", e.ransac_ms}, {"refine", e.refine_ms}};
+      entry["raw"] = MotionJson(e.raw);
+      if (e.refine.IsSolutionUsable()) {
+        const RefineSummary& r = e.refine;
+        entry["refined"] = MotionJson(e.pose);
+        PutFinite("median_residual_px", r.median_residual_px, &entry);
+        PutFinite("noise_px", r.noise_px, &entry);
+        entry["rotation_observable"] = r.rotation_observable;
+        entry["translation_observable"] = r.translation_observable;
+        entry["scale_observable"] = r.scale_observable;
+        entry["camera_pairs"] = Json::array();
+        for (const CameraPairFit& fit : r.camera_pairs) {
+          entry["camera_pairs"].push_back({{"cameras", {fit.camera1, fit.camera2}},
+                                           {"rows", fit.rows},
+                                           {"inliers", fit.inliers}});
+        }
+        for (const RigDoubt& doubt : e.rig_doubts) {
+          entry["rig_doubts"].push_back(doubt.message);
+        }
+        if (r.covariance) {
+          PutFinite("rotation_sd_deg", RadToDeg(r.rotation_sigma), &entry);
+          if (r.translation_observable) {
+            PutFinite("translation_dir_sd_deg", RadToDeg(r.direction_sigma), &entry);
+          }
+          Json rows = Json::array();
+          for (int i = 0; i < 6; ++i) {
+            Json row = Json::array();
+            for (int j = 0; j < 6; ++j) row.push_back((*r.covariance)(i, j));
+            rows.push_back(row);
+          }
+          entry["covariance"] = rows;
+          if (!r.weakest_direction.empty()) entry["weakest_direction"] = r.weakest_direction;
+        }
+        PutFinite("relative_scale_sd", r.relative_scale_sigma, &entry);
+      }
+    }
+    text += k == 0 ? "\n    " : ",\n    ";
+    for (const char c : JsonText(entry, 2)) {
+      text += c;
+      if (c == '\n') text += "    ";
+    }
+  }
+  text += pairs.empty() ? "]" : "\n  ]";
+  if (report.trajectories) text += ",\n  \"trajectories\": " + TrajectoriesJson(report);
+  return PrintableJson(text + "\n}\n");
+}
+
+std::string EstimateCsv(const EstimateReport& report, bool times) {
+  const std::vector<FramePair>& pairs = report.pairs;
+  std::string text =
+      "pair,status,time1,time2,qw,qx,qy,qz,tx,ty,tz,norm_t,matches,inliers,median_residual_px,"
+      "rotation_sd_deg,translation_dir_sd_deg,relative_scale_sd,rotation_observable,"
+      "translation_observable,scale_observable,raw_qw,raw_qx,raw_qy,raw_qz,raw_tx,raw_ty,raw_tz,"
+      "ransac_ms,refine_ms\n";
+  const auto motion = [](const Pose& pose) {
+    const Eigen::Quaterniond q = pose.Quaternion();
+    std::string cells;
+    for (const double v : {q.w(), q.x(), q.y(), q.z(), pose.t.x(), pose.t.y(), pose.t.z()}) {
+      cells += "," + CsvNumber(v);
+    }
+    return cells;
+  };
+  for (size_t k = 0; k < pairs.size(); ++k) {
+    const FramePair& pair = pairs[k];
+    const MotionEstimate& e = report.estimates[k];
+    text += CsvText(pair.name) + "," + CsvText(EstimateStatusName(e.status)) + "," +
+            (pair.time1 ? CsvNumber(*pair.time1) : "") + "," +
+            (pair.time2 ? CsvNumber(*pair.time2) : "");
+    if (!e.HasMotion()) {
+      // 8 cells of the motion, then the number of matches, then 17 more.
+      text += std::string(8, ',') + "," + std::to_string(report.matches[k].all) +
+              std::string(17, ',') + "\n";
+      continue;
+    }
+    const RefineSummary& r = e.refine;
+    const bool refined = r.IsSolutionUsable();
+    const auto known = [&](double value) {
+      return refined && value >= 0 ? CsvNumber(value) : std::string();
+    };
+    const auto flag = [&](bool value) { return refined ? std::string(value ? "1" : "0") : ""; };
+    text += motion(e.pose) + "," + CsvNumber(e.pose.t.norm()) + "," +
+            std::to_string(report.matches[k].all) + "," + std::to_string(e.num_inliers) + "," +
+            known(r.median_residual_px) + "," + known(RadToDeg(r.rotation_sigma)) + "," +
+            (r.translation_observable ? known(RadToDeg(r.direction_sigma)) : "") + "," +
+            known(r.relative_scale_sigma) + "," + flag(r.rotation_observable) + "," +
+            flag(r.translation_observable) + "," + flag(r.scale_observable) + motion(e.raw) + "," +
+            (times ? CsvNumber(e.ransac_ms) : "") + "," + (times ? CsvNumber(e.refine_ms) : "") +
+            "\n";
+  }
+  return text;
+}
+
+}  // namespace rigel

@@ -1,0 +1,255 @@
+#include "rigel/problems/evaluation/shard_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "rigel/core/angles.h"
+#include "rigel/problems/io/json_message.h"
+#include "rigel/problems/io/json_text.h"
+#include "rigel/problems/io/match_file.h"
+
+namespace rigel {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The angle that RadToDeg() turned into `degrees`, to the last bit: statistics of a merged report
+// are then those of the whole. DegToRad() may be off by some units in the last place.
+double ExactRadians(double degrees) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double radians = DegToRad(degrees);
+  double below = radians;
+  double above = radians;
+  for (int k = 0; k < 4; ++k) {
+    if (RadToDeg(below) == degrees) return below;
+    if (RadToDeg(above) == degrees) return above;
+    below = std::nextafter(below, -kInfinity);
+    above = std::nextafter(above, kInfinity);
+  }
+  return radians;
+}
+
+// Reading fails by exceptions, of the JSON library and these, which do not leave this file.
+[[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
+
+MotionErrors Errors(const Json& json) {
+  MotionErrors errors;
+  errors.rotation = ExactRadians(json.at("rotation_deg").get<double>());
+  if (json.contains("translation_dir_deg")) {
+    errors.direction = ExactRadians(json.at("translation_dir_deg").get<double>());
+  }
+  if (json.contains("scale")) errors.scale = json.at("scale").get<double>();
+  return errors;
+}
+
+EstimateStatus Status(const std::string& name) {
+  for (const EstimateStatus status :
+       {EstimateStatus::kNotRun, EstimateStatus::kSuccess, EstimateStatus::kInvalidInput,
+        EstimateStatus::kTooFewMatches, EstimateStatus::kNoSolution, EstimateStatus::kNotRefined,
+        EstimateStatus::kNoConsensus}) {
+    if (name == EstimateStatusName(status)) return status;
+  }
+  Fail("there is no status '" + name + "'");
+}
+
+PairResult Result(const Json& json) {
+  PairResult result;
+  result.status = Status(json.at("status").get<std::string>());
+  result.failed = result.status != EstimateStatus::kSuccess;
+  if (result.failed) result.message = json.at("message").get<std::string>();
+  if (json.contains("raw")) result.raw = Errors(json.at("raw"));
+  if (json.contains("refined")) result.refined = Errors(json.at("refined"));
+  if (json.contains("bound")) {
+    const MotionErrors bound = Errors(json.at("bound"));
+    result.bound = MotionBound{bound.rotation, bound.direction};
+  }
+  if (json.contains("nees")) {
+    result.nees = json.at("nees").at("value").get<double>();
+    result.nees_dof = JsonInteger(json.at("nees").at("degrees_of_freedom"), 1);
+  }
+  result.inlier_ratio = json.at("inlier_ratio").get<double>();
+  result.iterations = JsonInteger(json.at("iterations"), 0);
+  if (json.contains("reason")) result.doubt = json.at("reason").get<std::string>();
+  if (json.contains("time_ms")) {
+    result.ransac_ms = json.at("time_ms").at("ransac").get<double>();
+    result.refine_ms = json.at("time_ms").at("refine").get<double>();
+  }
+  return result;
+}
+
+bool HasSolver(const ComparisonReport& report, const std::string& name) {
+  return std::any_of(report.solvers.begin(), report.solvers.end(),
+                     [&](const SolverResults& s) { return s.solver == name; });
+}
+
+ComparisonReport Report(std::string_view text) {
+  const Json json = ParseJson(text);
+  if (json.at("format") != "rigel-report 1") Fail("its format is not 'rigel-report 1'");
+  if (!json.contains("shard")) Fail("it is not the report of a shard: made without --shard=i/n");
+  ComparisonReport report;
+  report.version.clear();
+  if (json.contains("rigel_version")) report.version = json.at("rigel_version").get<std::string>();
+  const Json& shard = json.at("shard");
+  report.shard = Shard{JsonInteger(shard.at("index"), 0), JsonInteger(shard.at("count"), 1)};
+  report.num_files = JsonInteger(shard.at("files"), 0);
+  if (report.shard->index >= report.shard->count) Fail("the index of its shard is not below count");
+  for (const auto& [name, value] : json.at("options").items()) {
+    report.options.emplace_back(name, value.get<std::string>());
+  }
+  for (const Json& entry : json.at("results")) {
+    const auto solver = entry.at("solver").get<std::string>();
+    // More entries of the same solver are for sequences.
+    if (!HasSolver(report, solver)) report.solvers.push_back({solver, {}});
+  }
+  if (report.solvers.empty()) Fail("it has no results");
+  for (const Json& entry : json.at("pair_results")) {
+    for (SolverResults& solver : report.solvers) {
+      PairResult result = Result(entry.at("solvers").at(solver.solver));
+      result.name = entry.at("pair").get<std::string>();
+      if (entry.contains("sequence")) result.sequence = entry.at("sequence").get<std::string>();
+      solver.pairs.push_back(std::move(result));
+    }
+  }
+  const int num_pairs = JsonInteger(json.at("pairs"), 0);
+  if (report.solvers.front().pairs.size() != static_cast<size_t>(num_pairs)) {
+    Fail("it has the results of " + std::to_string(report.solvers.front().pairs.size()) +
+         " pairs, expected " + std::to_string(num_pairs));
+  }
+  return report;
+}
+
+// The line of the number that no double holds, 0 if it is another error: of those of syntax the
+// library tells the line, of this only the number.
+int LineOfOverflow(std::string_view text, const std::exception& exception) {
+  const std::string message = exception.what();
+  const std::string what = "number overflow parsing '";
+  const size_t begin = message.find(what);
+  if (begin == std::string::npos) return 0;
+  std::string number = message.substr(begin + what.size());
+  number.erase(std::min(number.rfind('\''), number.size()));
+  const size_t place = std::min(text.find(number), text.size());
+  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + place, '\n'));
+}
+
+std::string ShardText(const Shard& shard) {
+  return std::to_string(shard.index) + "/" + std::to_string(shard.count);
+}
+
+std::string VersionText(const ComparisonReport& report) {
+  return report.version.empty() ? "0.1" : report.version;
+}
+
+const std::string* FindOption(const ReportOptions& options, const std::string& name) {
+  for (const auto& [key, value] : options) {
+    if (key == name) return &value;
+  }
+  return nullptr;
+}
+
+// The first option in which the two differ; empty if there is none.
+std::string Difference(const ReportOptions& a, const ReportOptions& b) {
+  const auto text = [](const std::string* value) {
+    return value == nullptr ? "not there" : "'" + *value + "'";
+  };
+  for (const ReportOptions* options : {&a, &b}) {
+    for (const auto& [name, ignored] : *options) {
+      const std::string* in_a = FindOption(a, name);
+      const std::string* in_b = FindOption(b, name);
+      if (in_a == nullptr || in_b == nullptr || *in_a != *in_b) {
+        return name + " is " + text(in_a) + " and " + text(in_b);
+      }
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+bool ParseShardReport(std::string_view text, const std::string& name, ComparisonReport* report,
+                      std::string* error) {
+  try {
+    *report = Report(text);
+    return true;
+  } catch (const std::exception& e) {
+    const int line = LineOfOverflow(text, e);
+    *error = PrintablePath(name + (line > 0 ? ":" + std::to_string(line) : "") +
+                           ": not a report that can be merged: " + JsonMessage(e));
+    return false;
+  }
+}
+
+bool MergeShards(const std::vector<std::string>& names, std::vector<ComparisonReport>* shards,
+                 ComparisonReport* whole, std::string* error) {
+  const auto fail = [error](const std::string& message) {
+    *error = PrintablePath(message);
+    return false;
+  };
+  if (shards->empty()) return fail("no reports to merge");
+  const ComparisonReport& first = shards->front();
+  const int count = first.shard->count;
+  std::vector<int> report_of(std::min<size_t>(count, shards->size()), -1);
+  for (size_t k = 0; k < shards->size(); ++k) {
+    const ComparisonReport& report = (*shards)[k];
+    const std::string both = names.front() + " and " + names[k] + ": ";
+    if (report.shard->count != count || report.num_files != first.num_files) {
+      return fail(both + "not shards of the same input: " + ShardText(*first.shard) + " of " +
+                  std::to_string(first.num_files) + " files and " + ShardText(*report.shard) +
+                  " of " + std::to_string(report.num_files));
+    }
+    if (report.version != first.version) {
+      return fail(both + "made by other versions: " + VersionText(first) + " and " +
+                  VersionText(report));
+    }
+    const std::string difference = Difference(first.options, report.options);
+    if (!difference.empty()) return fail(both + "made with other options: " + difference);
+    for (size_t other = 0; other < k; ++other) {
+      if ((*shards)[other].shard->index == report.shard->index) {
+        return fail(names[other] + " and " + names[k] + ": both are shard " +
+                    ShardText(*report.shard));
+      }
+    }
+    if (report.shard->index < static_cast<int>(report_of.size())) {
+      report_of[report.shard->index] = static_cast<int>(k);
+    }
+  }
+  const auto missing = std::find(report_of.begin(), report_of.end(), -1);
+  if (static_cast<int>(shards->size()) < count) {
+    const auto index = static_cast<int>(missing - report_of.begin());
+    return fail("shard " + ShardText({index, count}) + " is missing: " +
+                std::to_string(shards->size()) + " reports of " + std::to_string(count));
+  }
+
+  whole->version = first.version;
+  whole->options = first.options;
+  whole->shard.reset();
+  whole->num_files = 0;
+  whole->solvers.clear();
+  // Where solvers were chosen by the priors, the whole has those that every shard has.
+  for (const SolverResults& solver : first.solvers) {
+    if (std::all_of(shards->begin(), shards->end(), [&](const ComparisonReport& report) {
+          return HasSolver(report, solver.solver);
+        })) {
+      whole->solvers.push_back({solver.solver, {}});
+    }
+  }
+  if (whole->solvers.empty()) return fail("no solver's prior is in every file");
+  for (const int k : report_of) {
+    for (SolverResults& solver : whole->solvers) {
+      for (SolverResults& part : (*shards)[k].solvers) {
+        if (part.solver != solver.solver) continue;
+        std::move(part.pairs.begin(), part.pairs.end(), std::back_inserter(solver.pairs));
+        part.pairs.clear();
+      }
+    }
+  }
+  if (whole->solvers.front().pairs.empty()) return fail("no pair in any of the reports");
+  return true;
+}
+
+}  // namespace rigel

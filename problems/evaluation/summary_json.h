@@ -1,0 +1,20 @@
+// A SolverSummary as the reports of rigel_compare and rigel_experiment write it. Not installed: the
+// JSON library is the build's alone.
+#ifndef RIGEL_PROBLEMS_EVALUATION_SUMMARY_JSON_H_
+#define RIGEL_PROBLEMS_EVALUATION_SUMMARY_JSON_H_
+
+#include <nlohmann/json.hpp>
+
+#include "rigel/problems/evaluation/comparison.h"
+
+namespace rigel {
+
+nlohmann::ordered_json SummaryJson(const SolverSummary& summary);
+
+// Numbers come back as they were, to the last bit. Throws the library's exceptions on what
+// SummaryJson() does not write.
+SolverSummary ParseSummary(const nlohmann::ordered_json& json);
+
+}  // namespace rigel
+
+#endif  // RIGEL_PROBLEMS_EVALUATION_SUMMARY_JSON_H_

@@ -1,0 +1,59 @@
+// The bytes of text files that a program is given: plain, compressed by gzip, or from stdin.
+#ifndef RIGEL_PROBLEMS_IO_INPUT_FILE_H_
+#define RIGEL_PROBLEMS_IO_INPUT_FILE_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace rigel {
+
+// What is larger, as it lies there or when decompressed, is refused: no table of a user's is.
+inline constexpr size_t kMaxInputBytes = size_t{2} << 30;
+
+// Bytes that are not cleared before they are filled.
+class InputBytes {
+ public:
+  std::string_view text() const { return {data_.get(), size_}; }
+  char* end() { return data_.get() + size_; }
+  size_t size() const { return size_; }
+  size_t room() const { return capacity_ - size_; }
+
+  // `count` more bytes were written at end().
+  void Added(size_t count) { size_ += count; }
+
+  // Room for `capacity` bytes in all. False if there is no memory for it.
+  bool Reserve(size_t capacity);
+
+  // Room for one more byte at least, and for no more than `max` in all, of which there are fewer
+  // yet. False if there is no memory for it.
+  bool Grow(size_t max);
+
+ private:
+  struct Free {
+    void operator()(char* bytes) const { std::free(bytes); }
+  };
+  std::unique_ptr<char, Free> data_;
+  size_t capacity_ = 0;
+  size_t size_ = 0;
+};
+
+// The path as messages name it: "-" is stdin.
+std::string InputName(const std::string& path);
+
+// Reads a file, or stdin if the path is "-", and decompresses what gzip made. Stops behind a NUL,
+// which no text has: CheckText() then tells it. False with a message, one line, if it cannot be
+// read, is damaged, or is larger than max_bytes or than the memory.
+bool ReadInputFile(const std::string& path, InputBytes* bytes, std::string* error,
+                   size_t max_bytes = kMaxInputBytes);
+
+// Takes the byte order mark of UTF-8 off. False, with what there is instead and in which line (0:
+// in none), if the text is that of another encoding, or no text.
+bool CheckText(std::string_view* text, int64_t* line, std::string* what);
+
+}  // namespace rigel
+
+#endif  // RIGEL_PROBLEMS_IO_INPUT_FILE_H_

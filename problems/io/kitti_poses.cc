@@ -1,0 +1,120 @@
+#include "rigel/problems/io/kitti_poses.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/text_lines.h"
+
+namespace rigel {
+namespace {
+
+constexpr double kMaxRotationError = 1e-3;  // of any element of R'R - I
+
+// False with what is wrong.
+bool ParsePose(std::string_view line, Pose* pose, std::string* error) {
+  std::array<double, 12> m;
+  const std::vector<std::string_view> words = SplitAtBlanks(line);
+  for (size_t k = 0; k < std::min(words.size(), m.size()); ++k) {
+    if (!ParseFinite(words[k], &m[k])) {
+      *error = "number " + std::to_string(k + 1) + " is not a finite number";
+      return false;
+    }
+  }
+  if (words.size() != m.size()) {
+    *error = std::to_string(words.size()) + " numbers, expected 12: the rows of a 3x4 matrix";
+    return false;
+  }
+  Eigen::Matrix3d R;
+  R << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
+  const Eigen::Matrix3d off = R.transpose() * R - Eigen::Matrix3d::Identity();
+  if (!(off.cwiseAbs().maxCoeff() <= kMaxRotationError) || !(R.determinant() > 0)) {
+    *error = "the first three columns are not a rotation";
+    return false;
+  }
+  *pose = Pose::FromQuaternion(Eigen::Quaterniond(R), {m[3], m[7], m[11]});
+  return true;
+}
+
+bool ListPoseFiles(const std::string& directory, std::vector<std::filesystem::path>* files,
+                   std::string* error) {
+  namespace fs = std::filesystem;
+  std::error_code code;
+  fs::directory_iterator entry(directory, code);
+  for (; !code && entry != fs::directory_iterator(); entry.increment(code)) {
+    std::error_code ignored;
+    if (entry->path().extension() == ".txt" && !entry->is_directory(ignored)) {
+      files->push_back(entry->path());
+    }
+  }
+  if (code) {
+    *error = PrintablePath(directory) + ": cannot be listed: " + code.message();
+    return false;
+  }
+  if (files->empty()) {
+    *error = PrintablePath(directory) + ": no pose files (00.txt, ...) in this directory";
+    return false;
+  }
+  std::sort(files->begin(), files->end(),
+            [](const fs::path& a, const fs::path& b) { return a.native() < b.native(); });
+  return true;
+}
+
+}  // namespace
+
+bool ReadKittiPoses(const std::string& path, std::vector<Pose>* world_from_camera,
+                    std::string* error) {
+  std::vector<TextLine> lines;
+  if (!ReadFrameLines(path, &lines, error)) return false;
+  std::vector<Pose> poses;
+  for (const TextLine& line : lines) {
+    Pose pose;
+    std::string what;
+    if (!ParsePose(line.text, &pose, &what)) {
+      *error = Where(path, line) + ": " + what;
+      return false;
+    }
+    poses.push_back(pose);
+  }
+  if (poses.empty()) {
+    *error = PrintablePath(path) + ": there is no pose in it";
+    return false;
+  }
+  *world_from_camera = std::move(poses);
+  return true;
+}
+
+bool ReadDrivenMotions(const std::string& directory, int every, std::vector<DrivenMotion>* motions,
+                       std::string* error) {
+  std::vector<std::filesystem::path> files;
+  if (!ListPoseFiles(directory, &files, error)) return false;
+  std::vector<DrivenMotion> result;
+  for (const std::filesystem::path& file : files) {
+    std::vector<Pose> poses;
+    if (!ReadKittiPoses(file.string(), &poses, error)) return false;
+    for (size_t k = 1; k < poses.size(); k += static_cast<size_t>(every)) {
+      result.push_back({file.stem().string(), poses[k - 1], poses[k]});
+    }
+  }
+  if (result.empty()) {
+    *error = PrintablePath(directory) + ": no motion: no file has two poses";
+    return false;
+  }
+  *motions = std::move(result);
+  return true;
+}
+
+bool MakeDrivenPair(const SceneOptions& options, int index, const DrivenMotion& motion,
+                    FramePair* pair, std::string* error) {
+  if (!MakeScenePair(options, index, motion.body2_from_body1(), pair, error)) return false;
+  pair->sequence = motion.sequence;
+  const Eigen::Vector3d down = Eigen::Vector3d::UnitY();
+  pair->prior.gravity1 = motion.world_from_body1.R.transpose() * down;
+  pair->prior.gravity2 = motion.world_from_body2.R.transpose() * down;
+  return true;
+}
+
+}  // namespace rigel

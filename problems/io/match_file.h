@@ -1,0 +1,88 @@
+// Match files: frame pairs as UTF-8 text, format `rigmatch 1`.
+//
+//   format rigmatch 1
+//   camera K pinhole FX FY CX CY WIDTH HEIGHT QW QX QY QZ SX SY SZ
+//   time T1 T2
+//   truth QW QX QY QZ TX TY TZ
+//   gravity1 GX GY GZ
+//   gravity2 GX GY GZ
+//   gravity_sigma_deg S
+//   axis NX NY NZ
+//   axis_sigma_deg S
+//   normal NX NY NZ
+//   normal_sigma_deg S
+//   forward FX FY FZ
+//   distance D SIGMA
+//   noise_px S
+//   sequence NAME
+//   matches N
+//   I U V J U2 V2 SCORE                  (N rows)
+//
+// `format`, `matches` and at least `camera 0` are required. Header lines come in any order
+// before `matches`; `#` starts a comment line, blank lines are ignored, columns are separated by
+// blanks or tabs. Lengths are metres, times seconds, pixels undistorted, sigmas of directions
+// degrees (radians in MotionPrior); frames and quaternion order as in rigel/core/pose.h and
+// rigel/core/rig.h.
+//
+// No function here logs, throws on what a file holds, or ends the process. An error message is
+// one line of printable text: "path:line: what was wrong, what was expected", without the line
+// where there is none.
+#ifndef RIGEL_PROBLEMS_IO_MATCH_FILE_H_
+#define RIGEL_PROBLEMS_IO_MATCH_FILE_H_
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rigel/core/frame_pair.h"
+
+namespace rigel {
+
+// Reads the match file `path`, which may be compressed by gzip, or stdin if it is "-"; pair->name
+// becomes `path`, of stdin "stdin". False with a message if the file cannot be read, is larger than
+// 2 GiB or breaks the format in any way; *pair is then unchanged. What is returned
+// passes FramePair::IsValid, its directions are of unit length and its sigmas are positive.
+// Directions and quaternions that are off unit length by up to 1e-3 are normalized.
+bool ReadMatchFile(const std::string& path, FramePair* pair, std::string* error);
+
+// The same for text in memory; `name` stands for the path in messages and in pair->name.
+bool ParseMatches(std::string_view text, const std::string& name, FramePair* pair,
+                  std::string* error);
+
+// The text of a match file. Every number is the shortest that reads back as the same double,
+// with two exceptions: rotations pass through a quaternion (they agree to about 1e-15), and a
+// sigma through degrees (it may move by one unit in the last place, once: a sigma that came from
+// a file is exact). Does not check `pair`.
+std::string FormatMatches(const FramePair& pair);
+
+// Writes `pair` to `path`, compressed if its name ends in ".gz": to a temporary file beside it,
+// which then takes its place, so that `path` is never half a file. False with a message if that
+// fails, or if a reader would not get the same pair back (a number that is not finite, an image
+// size of 0, one time without the other, a sequence name with a blank, ...); nothing is then
+// written. pair.name is not stored.
+bool WriteMatchFile(const std::string& path, const FramePair& pair, std::string* error);
+
+// The text as a file of that name has it: compressed by gzip if the name ends in ".gz".
+std::string MatchFileBytes(const std::string& path, const std::string& text);
+
+// A path (or a message that holds one) as one line that is safe to show: control characters, marks
+// that turn the direction of writing and bytes that are not UTF-8 in hexadecimal.
+std::string PrintablePath(const std::string& path);
+
+// Whether a directory's file of that name is a match file: "NAME.matches" or "NAME.matches.gz".
+bool IsMatchFileName(const std::string& name);
+
+// Expands a comma-separated list of files and directories, in the order given. A directory means
+// the match files in it, not below it, in the order of the numbers in their names where all have
+// some, else in byte order; where the two differ, a line of *notes (may be null) says so. A file is
+// taken whatever its name; "-" is stdin, once. Empty items are skipped; what is named twice is
+// listed twice. One message is appended to *errors for each item that is not there, cannot be
+// listed, or is a directory without match files, and for each compressed file that lies beside its
+// like; the other items are still returned.
+std::vector<std::string> ListMatchFiles(const std::string& comma_separated,
+                                        std::vector<std::string>* errors,
+                                        std::vector<std::string>* notes = nullptr);
+
+}  // namespace rigel
+
+#endif  // RIGEL_PROBLEMS_IO_MATCH_FILE_H_

@@ -1,0 +1,50 @@
+#include "rigel/problems/io/run_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "rigel/problems/io/match_file.h"
+
+namespace rigel {
+
+RunLock::~RunLock() {
+  if (descriptor_ < 0) return;
+  unlink(path_.c_str());
+  close(descriptor_);
+}
+
+bool RunLock::Take(const std::string& path, std::string* error) {
+  constexpr int kMaxTries = 100;
+  for (int k = 0; k < kMaxTries; ++k) {
+    const int descriptor =
+        open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    if (descriptor < 0) {
+      *error =
+          PrintablePath(path) + ": cannot be written: " + std::generic_category().message(errno);
+      return false;
+    }
+    if (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      close(descriptor);
+      *error = PrintablePath(path) + ": another run is at work in this directory";
+      return false;
+    }
+    // The run that had it may have removed the file between the two calls.
+    struct stat opened, there;
+    if (fstat(descriptor, &opened) == 0 && stat(path.c_str(), &there) == 0 &&
+        opened.st_ino == there.st_ino && opened.st_dev == there.st_dev) {
+      path_ = path;
+      descriptor_ = descriptor;
+      return true;
+    }
+    close(descriptor);
+  }
+  *error = PrintablePath(path) + ": other runs make and remove it";
+  return false;
+}
+
+}  // namespace rigel

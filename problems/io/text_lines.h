@@ -1,0 +1,49 @@
+// Text files of numbers, line by line.
+//
+// A file may be compressed by gzip, and a byte order mark of UTF-8 is skipped. Text in another
+// encoding, a file larger than kMaxInputBytes (rigel/problems/io/input_file.h) and one that cannot be
+// read are refused with a message that names the file.
+#ifndef RIGEL_PROBLEMS_IO_TEXT_LINES_H_
+#define RIGEL_PROBLEMS_IO_TEXT_LINES_H_
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rigel {
+
+struct TextLine {
+  int number = 0;  // from 1
+  std::string text;
+};
+
+// The lines that are not blank and do not start with '#', without blanks at their ends. For files
+// whose lines say themselves what they are of.
+bool ReadTextLines(const std::string& path, std::vector<TextLine>* lines, std::string* error);
+
+// The lines of a file in which line k is that of frame k: all, without blanks at their ends. A
+// blank line or a comment is refused, with its number: skipped it would give each later frame the
+// line of another. Blank lines at the end of the file are none.
+bool ReadFrameLines(const std::string& path, std::vector<TextLine>* lines, std::string* error);
+
+// "path:line"; a path as one line of text.
+std::string Where(const std::string& path, const TextLine& line);
+
+std::string_view TrimBlanks(std::string_view text);
+
+// Between blanks; never empty.
+std::vector<std::string_view> SplitAtBlanks(std::string_view text);
+
+// Between commas, without blanks around them; may be empty.
+std::vector<std::string_view> SplitAtCommas(std::string_view text);
+
+// False if the whole word is not a finite number.
+bool ParseFinite(std::string_view word, double* value);
+
+// False if the whole word is not an integer from 0.
+bool ParseTimestamp(std::string_view word, int64_t* value);
+
+}  // namespace rigel
+
+#endif  // RIGEL_PROBLEMS_IO_TEXT_LINES_H_

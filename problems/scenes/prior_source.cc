@@ -1,0 +1,104 @@
+#include "rigel/problems/scenes/prior_source.h"
+
+#include "rigel/core/random.h"
+
+namespace rigel {
+
+bool ParsePriorSource(std::string_view name, PriorSource* source) {
+  if (name == "file") {
+    *source = PriorSource::kFile;
+  } else if (name == "body") {
+    *source = PriorSource::kBody;
+  } else if (name == "truth") {
+    *source = PriorSource::kTruth;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+bool ParsePriorNoiseAxis(std::string_view name, PriorNoiseAxis* axis) {
+  if (name == "pitch") {
+    *axis = PriorNoiseAxis::kPitch;
+  } else if (name == "roll") {
+    *axis = PriorNoiseAxis::kRoll;
+  } else if (name == "random") {
+    *axis = PriorNoiseAxis::kRandom;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+bool ApplyPriorSource(const PriorSourceOptions& options, int index, FramePair* pair,
+                      std::string* error, AppliedAxes* applied) {
+  MotionPrior& prior = pair->prior;
+  BodyAxes axes;
+  const std::optional<Eigen::Vector3d> stated_forward =
+      options.forward ? options.forward : prior.forward;
+  if (!ResolveBodyAxes(pair->rig, options.down, stated_forward, &axes, error)) {
+    *error = pair->name + ": " + *error + "; state --down, --forward or both";
+    return false;
+  }
+  prior.forward = axes.forward;
+  bool uses_down = false;
+  const auto down = [&] {
+    uses_down = true;
+    return axes.down;
+  };
+  switch (options.source) {
+    case PriorSource::kFile:
+      break;
+    case PriorSource::kBody:
+      prior.gravity1 = prior.gravity2 = prior.axis = prior.normal = down();
+      break;
+    case PriorSource::kTruth: {
+      if (!pair->truth.has_value()) {
+        *error = pair->name + ": no truth to take the prior from (--prior=truth)";
+        return false;
+      }
+      const Pose& truth = *pair->truth;
+      if (!prior.gravity1.has_value()) prior.gravity1 = down();
+      prior.gravity2 = truth.R * *prior.gravity1;
+      const Eigen::Vector3d omega = LogSO3(truth.R);
+      const Eigen::Vector3d axis =
+          omega.norm() > 1e-6 ? Eigen::Vector3d(omega.normalized()) : down();
+      prior.axis = axis;
+      prior.normal = axis;
+      if (truth.t.norm() > 0) {
+        if (options.true_distance) prior.distance = truth.t.norm();
+        const Eigen::Vector3d direction = truth.t.normalized();
+        const Eigen::Vector3d across = axis - direction * direction.dot(axis);
+        // An axis along t says nothing of the plane; any normal is as near as any other.
+        prior.normal = across.norm() > 1e-9 ? Eigen::Vector3d(across.normalized())
+                                            : Eigen::Vector3d(TangentBasis(direction).col(0));
+      }
+      break;
+    }
+  }
+
+  if (options.noise != 0.0) {
+    Random random = Random::Stream(options.seed ^ 0x7072696f72ULL, static_cast<uint64_t>(index));
+    const double sign = random.Uniform() < 0.5 ? -1.0 : 1.0;
+    Eigen::Vector3d about = random.UnitVector3();
+    if (options.noise_axis == PriorNoiseAxis::kPitch) about = axes.Right();
+    if (options.noise_axis == PriorNoiseAxis::kRoll) about = axes.forward;
+    if (options.noise_axis == PriorNoiseAxis::kPitch) uses_down = true;
+    const Eigen::Matrix3d disturb = ExpSO3(sign * options.noise * about);
+    if (prior.gravity2.has_value()) prior.gravity2 = disturb * *prior.gravity2;
+    if (prior.axis.has_value()) prior.axis = disturb * *prior.axis;
+    if (prior.normal.has_value()) prior.normal = disturb * *prior.normal;
+  }
+  if (options.sigma.has_value()) {
+    prior.gravity_sigma = prior.axis_sigma = prior.normal_sigma = options.sigma;
+  }
+  if (applied != nullptr) {
+    applied->axes = axes;
+    applied->down_suggested = uses_down && !options.down;
+    applied->cameras_off_down = CamerasOffDown(pair->rig, axes.down);
+    applied->forward_suggested = !stated_forward;
+  }
+  return true;
+}
+
+}  // namespace rigel

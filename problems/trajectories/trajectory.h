@@ -1,0 +1,72 @@
+// Trajectories: motions of consecutive frame pairs, chained.
+//
+// A trajectory's poses are world_from_body, the world being the body frame of its first frame, as
+// KITTI has it: the motion T_f2_f1 of a pair leads from pose k to pose k+1 = pose k * T_f2_f1^-1.
+#ifndef RIGEL_PROBLEMS_TRAJECTORIES_TRAJECTORY_H_
+#define RIGEL_PROBLEMS_TRAJECTORIES_TRAJECTORY_H_
+
+#include <string>
+#include <vector>
+
+#include "rigel/core/frame_pair.h"
+#include "rigel/core/pose.h"
+#include "rigel/refine/estimate_motion.h"
+
+namespace rigel {
+
+// Time stamps of one frame in two files differ by no more than this, seconds, or than this share of
+// the shorter of the two pairs: cameras of one frame may have stamps of their own.
+inline constexpr double kSameTimeSeconds = 1e-6;
+inline constexpr double kSameTimeShare = 0.1;
+
+// An estimated |t| counts as a length up to this relative standard deviation.
+inline constexpr double kRoughScaleRatio = 0.5;
+
+// The matches say that the rig stands still, to within kStillMetres, and no distance is stated that
+// contradicts.
+inline constexpr double kStillMetres = 1e-2;
+bool StandsStill(const FramePair& pair, const RefineSummary& refine);
+
+// The motion with this rotation and the rig's centre at rest: t = 0 where the body's origin is it.
+Pose Standing(const Pose& pose, const RefineSummary& refine);
+
+// Why pair k, k > 0, does not start where pair k - 1 ended; empty if it does: a pair is missing
+// between them (by `positions`, see below), another sequence, or another time. What a pair does not
+// state does not part it from the other.
+std::string WhyNotNext(const std::vector<FramePair>& pairs, const std::vector<int>& positions,
+                       size_t k);
+
+// Pairs first_pair to first_pair + NumPairs() - 1; all poses that exist go together.
+struct Trajectory {
+  std::string sequence;
+  size_t first_pair = 0;
+  std::vector<double> times;   // seconds, one a pose, ascending; empty where the pairs' are not so
+  std::vector<Pose> estimate;  // of MotionEstimate::pose: refined where that was asked for
+  std::vector<Pose> raw;       // of MotionEstimate::raw
+  std::vector<Pose> truth;     // empty unless all of its pairs have one
+  int num_still = 0;           // pairs whose |t| is consistent with zero: taken as zero
+  int num_stated_lengths = 0;  // pairs whose |t| is the distance that they state
+
+  size_t NumPairs() const { return estimate.size() - 1; }
+};
+
+// Chains the motions. `pairs` and `estimates` go together; `positions` has the place of each pair
+// in the drive, increasing, or is empty where they follow each other. A trajectory ends
+//   - at a pair that does not follow the one before (WhyNotNext);
+//   - at a pair that has no motion, or none with a length: not estimated or not refined, rotation
+//     or direction of t not observable, |t| not determined (its relative standard deviation above
+//     kRoughScaleRatio) and no distance stated. That pair is in none.
+// Standing still is no gap: StandsStill() makes a Standing() step. Without a refinement |t| counts
+// as determined where the hypothesis has a scale and matches between cameras, which `has_inter`
+// tells of each pair. A raw motion without a length of its own has that of the estimate.
+//
+// Each gap is told in one line of printable text in *notes.
+std::vector<Trajectory> ChainMotions(const std::vector<FramePair>& pairs,
+                                     const std::vector<MotionEstimate>& estimates,
+                                     const std::vector<char>& has_inter,
+                                     const std::vector<int>& positions,
+                                     std::vector<std::string>* notes);
+
+}  // namespace rigel
+
+#endif  // RIGEL_PROBLEMS_TRAJECTORIES_TRAJECTORY_H_

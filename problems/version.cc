@@ -1,7 +1,0 @@
-#include "rigel/problems/version.h"
-
-namespace rigel {
-
-const char* RigelVersion() { return RIGEL_VERSION; }
-
-}  // namespace rigel

@@ -1,0 +1,113 @@
+#include "rigel/refine/least_squares/epipolar_residuals.h"
+
+#include <cmath>
+#include <limits>
+
+#include "rigel/core/epipolar.h"
+
+namespace rigel {
+
+void LinearizeGroups(const GroupedMatches& matches, ResidualKind kind, const Pose& pose,
+                     const MotionBasis* basis, std::vector<GroupLinearization>* groups) {
+  groups->resize(matches.groups().size());
+  for (size_t g = 0; g < matches.groups().size(); ++g) {
+    const MatchGroup& group = matches.groups()[g];
+    const RigCamera& c1 = matches.rig().cameras[group.camera1];
+    const RigCamera& c2 = matches.rig().cameras[group.camera2];
+    GroupLinearization& linear = (*groups)[g];
+    const Eigen::Vector3d Rs = pose.R * c1.s;
+    const Eigen::Matrix3d RQ = pose.R * c1.Q;
+    const Eigen::Vector3d b = Rs + pose.t - c2.s;
+    Eigen::Matrix3d left = c2.Q.transpose();
+    Eigen::Matrix3d right = RQ;
+    if (kind == ResidualKind::kSampson) {
+      left.row(0) /= c2.intrinsics.fx;
+      left.row(1) /= c2.intrinsics.fy;
+      right.col(0) /= c1.intrinsics.fx;
+      right.col(1) /= c1.intrinsics.fy;
+    }
+    linear.F = left * Skew(b) * right;
+    constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
+    linear.rounding2 = kRounding * kRounding * linear.F.squaredNorm();
+    if (basis == nullptr) continue;
+    for (int m = 0; m < basis->cols(); ++m) {
+      // d([b]x R) = ([db]x + [b]x [w]x) R with db = w x R s + e.
+      const Eigen::Vector3d w = basis->block<3, 1>(0, m);
+      const Eigen::Vector3d db = w.cross(Rs) + basis->block<3, 1>(3, m);
+      linear.dF[m] = left * (Skew(db) + Skew(b) * Skew(w)) * right;
+    }
+  }
+}
+
+EpipolarResiduals::EpipolarResiduals(const GroupedMatches& matches, ResidualKind kind)
+    : matches_(&matches), kind_(kind) {
+  const int n = matches.size();
+  group_of_.resize(n);
+  p1_.resize(n);
+  p2_.resize(n);
+  for (size_t g = 0; g < matches.groups().size(); ++g) {
+    const MatchGroup& group = matches.groups()[g];
+    const PinholeCamera& c1 = matches.rig().cameras[group.camera1].intrinsics;
+    const PinholeCamera& c2 = matches.rig().cameras[group.camera2].intrinsics;
+    weight_.push_back(kind == ResidualKind::kAngular ? 0.25 * (c1.fx + c1.fy + c2.fx + c2.fy)
+                                                     : 1.0);
+    for (int k = group.begin; k < group.begin + group.size; ++k) {
+      const Match& m = matches.matches()[k];
+      group_of_[k] = static_cast<int>(g);
+      if (kind == ResidualKind::kSampson) {
+        p1_[k] = CentredPixel(c1, m.pixel1);
+        p2_[k] = CentredPixel(c2, m.pixel2);
+      } else {
+        p1_[k] = c1.Normalize(m.pixel1).normalized();
+        p2_[k] = c2.Normalize(m.pixel2).normalized();
+      }
+    }
+  }
+}
+
+double EpipolarResiduals::Evaluate(const std::vector<GroupLinearization>& groups, int k,
+                                   int num_parameters, double* jacobian, int stride) const {
+  const int g = group_of_[k];
+  const GroupLinearization& linear = groups[g];
+  const Eigen::Vector3d& p1 = p1_[k];
+  const Eigen::Vector3d& p2 = p2_[k];
+  Eigen::Vector3d a = linear.F * p1;
+  Eigen::Vector3d b = linear.F.transpose() * p2;
+  const double C = p2.dot(a);
+
+  // dr/dF = u p1' - v b': for the algebraic residual that is p2 p1'.
+  double r = C;
+  Eigen::Vector3d u = p2;
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();
+  if (kind_ != ResidualKind::kAlgebraic) {
+    if (kind_ == ResidualKind::kSampson) {
+      a.z() = 0.0;
+      b.z() = 0.0;
+    } else {
+      // Tangent parts: p2.a = p1.b = C.
+      a -= C * p2;
+      b -= C * p1;
+    }
+    const double gradient2 = a.squaredNorm() + b.squaredNorm();
+    if (!(gradient2 > linear.rounding2 * (p1.squaredNorm() + p2.squaredNorm())) ||
+        !std::isfinite(gradient2)) {
+      for (int m = 0; m < num_parameters && jacobian != nullptr; ++m) jacobian[m * stride] = 0.0;
+      return 0.0;
+    }
+    // d(gradient^2)/2 = a.(dF p1) + b.(dF'p2) for both kinds.
+    const double w = weight_[g] / std::sqrt(gradient2);
+    const double s = C / gradient2;
+    r = w * C;
+    u = w * (p2 - s * a);
+    v = w * s * p2;
+  }
+  if (jacobian != nullptr) {
+    const Eigen::Matrix3d dr_dF = u * p1.transpose() - v * b.transpose();
+    for (int m = 0; m < num_parameters; ++m) {
+      jacobian[m * stride] = dr_dF.cwiseProduct(linear.dF[m]).sum();
+    }
+  }
+  return r;
+}
+
+}  // namespace rigel

@@ -1,0 +1,36 @@
+// The normal equations of the Sampson errors of a frame pair by its motion.
+#ifndef RIGEL_REFINE_LEAST_SQUARES_NORMAL_EQUATIONS_H_
+#define RIGEL_REFINE_LEAST_SQUARES_NORMAL_EQUATIONS_H_
+
+#include <Eigen/Core>
+
+#include "rigel/core/eigen_types.h"
+#include "rigel/core/grouped_matches.h"
+#include "rigel/core/pose.h"
+#include "rigel/refine/least_squares/sampson_kernel.h"
+
+namespace rigel {
+
+// By the perturbation R <- Exp(w) R, t <- t + e: w (radians), then e (metres).
+struct MotionNormalEquations {
+  double cost = 0.0;
+  Vector6d gradient = Vector6d::Zero();
+  Matrix6d curvature = Matrix6d::Zero();
+};
+
+// Adds what SumSampson() gives at `pose` for `pixels` and their weights: matches of the group, or
+// some of them. Without `derivatives` only to the cost, by the same bits.
+void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatches& matches,
+                        const MatchGroup& group, const PixelArrays& pixels, const double* weights,
+                        const Pose& pose, bool derivatives, MotionNormalEquations* sum);
+
+// w^2 J C J' of each match of the group, J the derivative of its Sampson error (pixels) by that
+// perturbation and w its weight. With C the covariance of the motion by matches of unit noise this
+// is the leverage of a match that is one of them: 0 to 1, over all matches the number of
+// parameters.
+void Leverages(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
+               const double* weights, const Matrix6d& covariance, double* leverages);
+
+}  // namespace rigel
+
+#endif  // RIGEL_REFINE_LEAST_SQUARES_NORMAL_EQUATIONS_H_

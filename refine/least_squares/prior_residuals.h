@@ -1,0 +1,58 @@
+// A motion prior as residuals in units of its sigma.
+//
+//   gravity  the two components of R g1 across g2, over sqrt(2) sigma: both directions are measured
+//   axis     the two components of R n - n across n, over sigma times the length of that chord per
+//            radian of error in n, 2 sin(a/2), a at most 3; below kMinAxisAngle of rotation the
+//            axis says nothing measurable and the chord at kMinAxisAngle is used
+//   normal   the same for R n - n, and the component of t along n over |t| sigma
+//   distance (|t| - D) / sigma, D from wheel odometry, with each of them or alone
+// A part without a sigma gives no residual.
+#ifndef RIGEL_REFINE_LEAST_SQUARES_PRIOR_RESIDUALS_H_
+#define RIGEL_REFINE_LEAST_SQUARES_PRIOR_RESIDUALS_H_
+
+#include <Eigen/Core>
+
+#include "rigel/core/eigen_types.h"
+#include "rigel/core/pose.h"
+#include "rigel/core/prior.h"
+
+namespace rigel {
+
+inline constexpr double kMinAxisAngle = 1e-3;  // radians
+inline constexpr int kMaxPriorResiduals = 4;
+
+class PriorResiduals {
+ public:
+  using Residuals =
+      Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMaxPriorResiduals, 1>;
+  using Jacobian =
+      Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::DontAlign, kMaxPriorResiduals, 6>;
+
+  PriorResiduals() = default;
+  // The weights of axis and normal depend on the angle and |t| of `start` and stay fixed.
+  // `kind` chooses which direction of the prior is used.
+  PriorResiduals(const MotionPrior& prior, PriorKind kind, const Pose& start);
+
+  int size() const { return size_; }
+
+  // Residuals at `pose`, and their derivative by the perturbation R <- Exp(d) R, t <- t + e, if
+  // `jacobian` is not null.
+  void Evaluate(const Pose& pose, Residuals* residuals, Jacobian* jacobian) const;
+
+ private:
+  int size_ = 0;
+  int num_direction_ = 0;
+  bool with_normal_ = false;
+  bool with_distance_ = false;
+  double distance_ = 0.0;
+  double distance_weight_ = 0.0;
+  Eigen::Vector3d from_ = Eigen::Vector3d::Zero();  // R from_ = to_
+  Eigen::Vector3d to_ = Eigen::Vector3d::Zero();
+  Matrix3x2d across_ = Matrix3x2d::Zero();
+  double weight_ = 0.0;
+  double translation_weight_ = 0.0;
+};
+
+}  // namespace rigel
+
+#endif  // RIGEL_REFINE_LEAST_SQUARES_PRIOR_RESIDUALS_H_

@@ -1,0 +1,67 @@
+// The inner loop of the refinement: normal equations of the Sampson errors of one camera pair by
+// the nine entries of its fundamental matrix.
+//
+// The residual of a match depends on the motion through F alone, so that the sums over the matches
+// need no derivative of the motion: H = sum (dr/dF)(dr/dF)' is turned into the normal equations of
+// any parameters by dF/d(parameters), once a camera pair.
+#ifndef RIGEL_REFINE_LEAST_SQUARES_SAMPSON_KERNEL_H_
+#define RIGEL_REFINE_LEAST_SQUARES_SAMPSON_KERNEL_H_
+
+#include "rigel/core/cpu_path.h"
+#include "rigel/core/score_kernel.h"
+#include "rigel/refine/least_squares/loss.h"
+
+namespace rigel {
+
+// For e = w r, the Sampson error in pixels times the weight of the match, and s = e^2.
+struct SampsonSums {
+  double cost;   // 1/2 sum rho(s)
+  double g[9];   // sum rho'(s) e de/dF, F row by row
+  double H[81];  // sum h(s) (de/dF)(de/dF)', full and symmetric; see SumSampson()
+};
+
+// What the second derivative of the loss does to H.
+enum class Curvature {
+  kReweighted,  // h = rho': every step lowers the cost of the reweighted least squares
+  // h = rho' + 2 s rho'' (Newton's) where that is above rho'/3, else rho': near the minimum a step
+  // leaves next to nothing, and outliers do not make it too long.
+  kNewton,
+};
+
+struct SampsonKernelOptions {
+  LossKind loss = LossKind::kNone;
+  double loss_scale = 1.0;  // pixels, > 0
+  Curvature curvature = Curvature::kReweighted;
+};
+
+// `F` is the row-major centred fundamental matrix, `weights` one number a match: matches with 0 are
+// left out. The pixels are read up to a multiple of kKernelPadding: any finite numbers. A match
+// whose squared gradient is not above rounding2 (|p1|^2 + |p2|^2) is at an epipole: its residual
+// and derivative are zero. Without a gradient (`derivatives` false) only the cost is set. The bits
+// do not depend on the path.
+void SumSampson(const SampsonKernelOptions& options, const PixelArrays& pixels,
+                const double* weights, const double F[9], double rounding2, bool derivatives,
+                SampsonSums* sums, CpuPath path = BestCpuPath());
+
+// The derivatives of F's entries by six parameters, F row by row; the last two columns are zero.
+struct FundamentalDerivatives {
+  double d[9][8];
+};
+
+// Adds D'g and D'H D for the first six columns of D: `gradient` has 6 entries, `curvature` 36.
+void AddProjected(const SampsonSums& sums, const FundamentalDerivatives& D, double* gradient,
+                  double* curvature, CpuPath path = BestCpuPath());
+
+// w^2 (dr/dF) C (dr/dF)' of each match: the variance of its residual r that an error of F brings, C
+// (row-major) being the covariance of F's entries. F, weights, padding and rounding2 as above.
+void SampsonLeverages(const PixelArrays& pixels, const double* weights, const double F[9],
+                      const double C[81], double rounding2, double* leverages,
+                      CpuPath path = BestCpuPath());
+
+// g^2 / (g^2 + floor2), g the gradient of a match by its pixels: EpipoleWeights() of uncertainty.h.
+void GradientWeights(const PixelArrays& pixels, const double F[9], double floor2, double* weights,
+                     CpuPath path = BestCpuPath());
+
+}  // namespace rigel
+
+#endif  // RIGEL_REFINE_LEAST_SQUARES_SAMPSON_KERNEL_H_

@@ -1,0 +1,276 @@
+#include "rigel/refine/least_squares/uncertainty.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "rigel/core/angles.h"
+#include "rigel/core/median.h"
+#include "rigel/refine/least_squares/normal_equations.h"
+
+namespace rigel {
+
+namespace {
+
+// Of an information matrix with a unit diagonal: what rounding in pixels of some hundred makes of
+// zero stays below this.
+constexpr double kMinEigenvalue = 1e-11;
+
+// J'J of the Sampson residuals of one camera pair, each times its weight.
+Matrix6d GroupInformation(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
+                          const double* weights) {
+  MotionNormalEquations sum;
+  AddNormalEquations(SampsonKernelOptions(), matches, group, matches.Pixels(group), weights, pose,
+                     /*derivatives=*/true, &sum);
+  return sum.curvature;
+}
+
+}  // namespace
+
+Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<double>& weights,
+                            const Pose& pose) {
+  Matrix6d information = Matrix6d::Zero();
+  for (const MatchGroup& group : matches.groups()) {
+    information += GroupInformation(matches, group, pose, weights.data() + group.begin);
+  }
+  return information;
+}
+
+void EpipoleWeights(const GroupedMatches& matches, const Pose& pose, double noise_px,
+                    std::vector<double>* weights) {
+  weights->resize(matches.size());
+  for (const MatchGroup& group : matches.groups()) {
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = matches.Fundamental(group, pose);
+    const double floor2 = kEpipoleSigmas * kEpipoleSigmas * noise_px * noise_px *
+                          F.topLeftCorner<2, 2>().squaredNorm();
+    GradientWeights(matches.Pixels(group), F.data(), floor2, weights->data() + group.begin);
+  }
+}
+
+namespace {
+
+// Appends `factor` times the parallax in pixels of those of the group's matches whose weight is not
+// zero, squared.
+template <class Weight>
+void AppendSquaredParallaxPx(const GroupedMatches& matches, const MatchGroup& group,
+                             const std::vector<Weight>& weights, const Pose& pose, double factor,
+                             std::vector<double>* squares) {
+  const PinholeCamera& c = matches.rig().cameras[group.camera2].intrinsics;
+  const double pixels = factor * 0.5 * (c.fx + c.fy);
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = pose.R;
+  size_t end = squares->size();
+  squares->resize(end + group.size);
+  double* sin2 = squares->data() + end;
+  SquaredParallax(matches.Directions(group), R.data(), group.size, sin2);
+  for (int k = 0; k < group.size; ++k) {
+    (*squares)[end] = pixels * pixels * sin2[k];
+    end += weights[group.begin + k] != 0 ? 1 : 0;
+  }
+  squares->resize(end);
+}
+
+double MedianParallaxPx(const GroupedMatches& matches, const MatchGroup& group,
+                        const std::vector<double>& weights, const Pose& pose) {
+  std::vector<double> squares;
+  AppendSquaredParallaxPx(matches, group, weights, pose, 1.0, &squares);
+  return squares.empty() ? 0.0 : std::sqrt(MedianInPlace(&squares));
+}
+
+}  // namespace
+
+Matrix6d ReliableInformation(const GroupedMatches& matches,
+                             const std::vector<double>& match_weights, const Pose& pose,
+                             double noise_px) {
+  constexpr double kShortBaseline = 0.1;  // of the longest
+  constexpr double kSigmas = 5.0;
+  constexpr double kParallaxNoise = 6.0;  // sigma
+  const double variance = noise_px * noise_px;
+  const MotionBasis basis = FullBasis(pose, true);
+  std::vector<double> weights;
+  EpipoleWeights(matches, pose, noise_px, &weights);
+  for (size_t k = 0; k < weights.size(); ++k) weights[k] *= match_weights[k];
+  std::vector<double> baseline;
+  for (const MatchGroup& group : matches.groups()) {
+    const RigCamera& c1 = matches.rig().cameras[group.camera1];
+    const RigCamera& c2 = matches.rig().cameras[group.camera2];
+    baseline.push_back((pose.R * c1.s + pose.t - c2.s).norm());
+  }
+  const double longest =
+      baseline.empty() ? 0.0 : *std::max_element(baseline.begin(), baseline.end());
+  const auto information_of = [&](size_t g) {
+    const MatchGroup& group = matches.groups()[g];
+    return Matrix6d(GroupInformation(matches, group, pose, weights.data() + group.begin) /
+                    variance);
+  };
+  Matrix6d sum = Matrix6d::Zero();
+  std::vector<size_t> in_question;
+  for (size_t g = 0; g < baseline.size(); ++g) {
+    if (baseline[g] < kShortBaseline * longest &&
+        MedianParallaxPx(matches, matches.groups()[g], match_weights, pose) <
+            kParallaxNoise * noise_px) {
+      in_question.push_back(g);
+    } else {
+      sum += information_of(g);
+    }
+  }
+  // Each has to be told from zero by those that count already. Never added and taken away again:
+  // the information is of 1 / baseline^2, and near zero rounding would leave nothing else.
+  std::stable_sort(in_question.begin(), in_question.end(),
+                   [&](size_t a, size_t b) { return baseline[a] > baseline[b]; });
+  for (const size_t g : in_question) {
+    Matrix6d others;
+    if (!CovarianceOfBasis(sum, basis, &others)) break;
+    if (baseline[g] < kSigmas * std::sqrt(others.block<3, 3>(3, 3).trace())) break;
+    sum += information_of(g);
+  }
+  return sum;
+}
+
+bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis,
+                       Matrix6d* covariance) {
+  const int k = static_cast<int>(basis.cols());
+  if (k == 0 || !information.allFinite()) return false;
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+  const Square reduced = basis.transpose() * information * basis;
+  // Radians and metres are unlike: bring the diagonal to one before judging the rank.
+  const Eigen::VectorXd diagonal = reduced.diagonal();
+  if (!(diagonal.minCoeff() > 0)) return false;
+  const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
+  const Square scaled = scale.asDiagonal() * reduced * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Square> eigen(scaled);
+  if (!(eigen.eigenvalues()(0) > kMinEigenvalue)) return false;
+  const Square inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
+                         eigen.eigenvectors().transpose();
+  const Square unscaled = scale.asDiagonal() * inverse * scale.asDiagonal();
+  *covariance = basis * unscaled * basis.transpose();
+  return true;
+}
+
+MotionBasis FullBasis(const Pose& pose, bool scale_free) {
+  MotionBasis basis;
+  if (scale_free) {
+    basis.setIdentity(6, 6);
+    return basis;
+  }
+  basis.setZero(6, 5);
+  basis.block<3, 3>(0, 0).setIdentity();
+  const double norm = pose.t.norm();
+  const Eigen::Vector3d direction =
+      norm > 0 ? Eigen::Vector3d(pose.t / norm) : Eigen::Vector3d::UnitZ();
+  basis.block<3, 2>(3, 3) = TangentBasis(direction);
+  return basis;
+}
+
+MotionBasis PriorBasis(const Pose& pose, const Alignment& alignment, bool scale_free) {
+  const Eigen::Vector3d axis = alignment.AxisInFrame2();
+  const double norm = pose.t.norm();
+  const Eigen::Vector3d direction =
+      norm > 0 ? Eigen::Vector3d(pose.t / norm) : Eigen::Vector3d::UnitZ();
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 3> t_basis;
+  if (alignment.kind == PriorKind::kPlanar) {
+    if (scale_free) {
+      t_basis = TangentBasis(axis);
+    } else {
+      t_basis = axis.cross(direction);
+    }
+  } else if (scale_free) {
+    t_basis = Eigen::Matrix3d::Identity();
+  } else {
+    t_basis = TangentBasis(direction);
+  }
+  MotionBasis basis;
+  basis.setZero(6, 1 + t_basis.cols());
+  basis.block<3, 1>(0, 0) = axis;
+  basis.block(3, 1, 3, t_basis.cols()) = t_basis;
+  return basis;
+}
+
+double RelativeScaleSigma(const Matrix6d& information, const Pose& pose) {
+  const double norm = pose.t.norm();
+  if (!(norm > 0)) return std::numeric_limits<double>::infinity();
+  const Eigen::Vector3d direction = pose.t / norm;
+  // As CovarianceOfBasis() does, but by a Cholesky factor L where that shows the rank to be full:
+  // the trace of the inverse bounds its largest eigenvalue.
+  const Vector6d scale = information.diagonal().cwiseSqrt().cwiseInverse();
+  const Matrix6d scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> llt(scaled);
+  if (llt.info() == Eigen::Success) {
+    Matrix6d inverse = Matrix6d::Identity();
+    llt.matrixL().solveInPlace(inverse);
+    if (inverse.squaredNorm() * kMinEigenvalue < 1.0) {
+      const Eigen::Vector3d scaled_direction = scale.tail<3>().cwiseProduct(direction);
+      return (inverse.rightCols<3>() * scaled_direction).norm() / norm;
+    }
+  }
+  Matrix6d covariance;
+  if (!CovarianceOfBasis(information, FullBasis(pose, true), &covariance)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return std::sqrt(direction.dot(covariance.block<3, 3>(3, 3) * direction)) / norm;
+}
+
+double RotationSigma(const Matrix6d& covariance) {
+  return std::sqrt(covariance.block<3, 3>(0, 0).trace());
+}
+
+double DirectionSigma(const Matrix6d& covariance, const Eigen::Vector3d& t) {
+  const double norm = t.norm();
+  if (!(norm > 0)) return std::numeric_limits<double>::infinity();
+  const Eigen::Matrix<double, 3, 2> across = TangentBasis(t / norm);
+  return std::sqrt((across.transpose() * covariance.block<3, 3>(3, 3) * across).trace()) / norm;
+}
+
+std::string WeakestDirection(const Matrix6d& covariance, const Eigen::Vector3d& t) {
+  const double norm = t.norm();
+  if (!(norm > 0) || !covariance.allFinite()) return "";
+  Eigen::Matrix<double, 6, 1> unit;
+  unit << 1, 1, 1, norm, norm, norm;
+  const Matrix6d relative = unit.cwiseInverse().asDiagonal() * covariance *
+                            unit.cwiseInverse().asDiagonal().toDenseMatrix();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(relative);
+  Eigen::Matrix<double, 6, 1> weakest =
+      unit.cwiseProduct(eigen.eigenvectors().col(5)) * std::sqrt(eigen.eigenvalues()(5));
+  // Either sign is as good: the larger part of t points forward of its own axis.
+  int largest = 3;
+  for (int k = 4; k < 6; ++k) {
+    if (std::abs(weakest(k)) > std::abs(weakest(largest))) largest = k;
+  }
+  if (weakest(largest) < 0) weakest = -weakest;
+  const Eigen::Vector3d turn = weakest.head<3>();
+  const Eigen::Vector3d shift = weakest.tail<3>();
+  const auto axis = [](const Eigen::Vector3d& v) {
+    const Eigen::Vector3d u = v.norm() > 0 ? Eigen::Vector3d(v.normalized()) : v;
+    char text[64];
+    // No "-0.0".
+    std::snprintf(text, sizeof(text), "(%.1f, %.1f, %.1f)", std::round(10 * u.x()) / 10 + 0.0,
+                  std::round(10 * u.y()) / 10 + 0.0, std::round(10 * u.z()) / 10 + 0.0);
+    return std::string(text);
+  };
+  char text[192];
+  std::snprintf(text, sizeof(text), "turn by %.3g deg about %s with t by %.3g m along %s",
+                RadToDeg(turn.norm()), axis(turn).c_str(), shift.norm(), axis(shift).c_str());
+  return text;
+}
+
+double ParallaxPercentilePx(const GroupedMatches& matches, const std::vector<char>& mask,
+                            const Pose& pose) {
+  std::vector<double> squares;
+  for (const MatchGroup& group : matches.groups()) {
+    if (group.camera1 != group.camera2) continue;
+    const Eigen::Vector3d& s = matches.rig().cameras[group.camera1].s;
+    const double arm = (pose.R * s - s).norm();
+    const double share = pose.t.norm() > 0 ? pose.t.norm() / (pose.t.norm() + arm) : 0.0;
+    AppendSquaredParallaxPx(matches, group, mask, pose, share, &squares);
+  }
+  if (squares.empty()) return std::numeric_limits<double>::infinity();
+  const auto nth = squares.begin() + static_cast<long>(squares.size() * 4 / 5);
+  std::nth_element(squares.begin(), nth, squares.end());
+  return std::sqrt(*nth);
+}
+
+}  // namespace rigel

@@ -1,0 +1,51 @@
+#include "rigel/refine/search/chance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+namespace rigel {
+
+bool ExceedsChance(const GroupedMatches& matches, const Pose& pose, int num_inliers,
+                   double threshold_px, double num_tries) {
+  constexpr int kFree = 6;
+  constexpr double kFalseAlarms = 1e-3;
+  const int n = matches.size() - kFree;
+  const int k = num_inliers - kFree;
+  if (n <= 0 || k <= 0) return false;
+  double q = 0.0;
+  for (const MatchGroup& group : matches.groups()) {
+    const PinholeCamera& c = matches.rig().cameras[group.camera2].intrinsics;
+    // Matches beyond the stated size say more of it than the size does.
+    double width = c.width > 0 ? c.width : std::max(2.0 * std::abs(c.cx), c.fx);
+    double height = c.height > 0 ? c.height : std::max(2.0 * std::abs(c.cy), c.fy);
+    Eigen::AlignedBox2d extent;
+    for (int m = group.begin; m < group.begin + group.size; ++m) {
+      extent.extend(matches.matches()[m].pixel2);
+    }
+    width = std::max(width, extent.sizes().x());
+    height = std::max(height, extent.sizes().y());
+    const double band = 2.0 * threshold_px * std::hypot(width, height);
+    q += std::min(1.0, band / (width * height)) * group.size / matches.size();
+  }
+  constexpr double kNoBound = std::numeric_limits<double>::infinity();
+  constexpr double kNear = 2.0, kFar = 5.0;  // thresholds
+  int near = 0, far = 0;
+  matches.Score(pose, kNear * threshold_px, kNoBound, &near);
+  matches.Score(pose, kFar * threshold_px, kNoBound, &far);
+  q = std::max(q, (far - near) / ((kFar - kNear) * matches.size()));
+  // Matches of chance are denser at the motion that has most of them than next to it: by up to 1.2
+  // times [rigel_benchmark --ransac=hostile]. Their number does not make up for that.
+  constexpr double kDenser = 1.5;
+  q *= kDenser;
+  const double share = k / static_cast<double>(n);
+  if (share <= q) return false;
+  const double divergence =
+      share * std::log(share / q) +
+      (share < 1.0 ? (1.0 - share) * std::log((1.0 - share) / (1.0 - q)) : 0.0);
+  return n * divergence > std::log(num_tries / kFalseAlarms);
+}
+
+}  // namespace rigel

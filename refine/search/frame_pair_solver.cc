@@ -1,0 +1,134 @@
+#include "rigel/refine/search/frame_pair_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rigel/refine/search/sign_and_scale.h"
+
+namespace rigel {
+namespace {
+
+// So many matches tell a good hypothesis from a bad one loosely.
+constexpr size_t kSubset = 128;
+// The refinement takes all; until then these are enough.
+constexpr size_t kOptimized = 300;
+
+}  // namespace
+
+FramePairSolver::FramePairSolver(const SolverInfo& solver, const GroupedMatches& matches,
+                                 const Alignment& alignment, const RansacOptions& options)
+    : solver_(solver),
+      matches_(matches),
+      scored_subset_(matches.size() > options.max_scored ? matches.DrawnSubset(options.max_scored)
+                                                         : GroupedMatches()),
+      scored_(scored_subset_.size() > 0 ? scored_subset_ : matches_),
+      subset_(matches.EvenSubset(kSubset)),
+      drawn_subset_(scored_.DrawnSubset(kSubset)),
+      sign_subset_(matches.EvenSubset(kSignSubset)),
+      prepared_(PreparedMatches::OnDemand(matches, alignment)),
+      sampler_(matches, solver.sampling, solver.sample_size, options.max_iterations,
+               options.prosac),
+      options_(options),
+      optimized_(matches.EvenSubset(kOptimized)),
+      loose_engine_(subset_),
+      engine_(optimized_),
+      threshold_px_(options.threshold_px) {
+  if (options.score == ScoreKind::kMagsac) {
+    loss_ = MagsacTable(options.threshold_px * options.threshold_px);
+  }
+  for (const MatchGroup& group : matches.groups()) {
+    if (group.camera1 != group.camera2) intra_only_ = false;
+  }
+}
+
+bool FramePairSolver::Draw(Random* random, int* sample) const {
+  for (int k = 0; k < kMaxRedraws; ++k) {
+    const bool drawn = sampler_.Draw(random, sample);
+    if (!drawn || !options_.spread_samples || IsSpread(sample)) return drawn;
+  }
+  return true;
+}
+
+double FramePairSolver::Work(int num_solutions) const {
+  constexpr double kSample = 1.0, kSolution = 0.3, kGroup = 0.05, kMatch = 0.0025;
+  return kSample + solver_.nominal_us +
+         num_solutions * (kSolution + kGroup * static_cast<double>(scored_.groups().size()) +
+                          kMatch * scored_.size());
+}
+
+// The sum over the subset is too far above its expectation for a score of `best`. Terms are
+// between 0 and t^2: of all sets of so many with this mean those of zeros and t^2 alone scatter
+// most, hypergeometrically, and where few are t^2 with a longer tail than a normal one.
+bool FramePairSolver::BailsOut(const Model& model, double best) const {
+  constexpr double kDeviations = 3.0;
+  constexpr double kTerms = 2.0;
+  const double n = scored_.size(), m = drawn_subset_.size();
+  if (n < 2.0 * m) return false;
+  const double t2 = threshold_px_ * threshold_px_;
+  const double p = std::min(best / (n * t2), 1.0);
+  const double sigma = std::sqrt(m * p * (1.0 - p) * (1.0 - m / n));
+  const double limit = t2 * (m * p + kDeviations * sigma + kTerms);
+  return drawn_subset_.Score(model, threshold_px_, limit, nullptr, Loss()) > limit;
+}
+
+bool FramePairSolver::Admit(Model* model) const {
+  return model->AllFinite() && ResolveSign(sign_subset_, threshold_px_, model);
+}
+
+bool FramePairSolver::Similar(const Model& a, const Model& b) const {
+  constexpr double kMinTrace = 3.0 - 3.05e-4;  // 1 + 2 cos(1 deg)
+  constexpr double kMinCosine = 0.94;          // 20 deg
+  return a.R.cwiseProduct(b.R).sum() > kMinTrace &&
+         std::abs(a.t.dot(b.t)) > kMinCosine * a.t.norm() * b.t.norm();
+}
+
+bool FramePairSolver::OptimizeLoosely(Model* model) const {
+  ResolveSignAndMaybeScale(kLooseFactor * threshold_px_, model);
+  return OptimizeOn(subset_, &loose_engine_, kLooseFactor * threshold_px_, model) &&
+         OptimizeOn(optimized_, &engine_, threshold_px_, model) && Admit(model);
+}
+
+bool FramePairSolver::LocalOptimize(Model* model) const {
+  Model optimized = *model;
+  ResolveSignAndMaybeScale(threshold_px_, &optimized);
+  if (!OptimizeOn(optimized_, &engine_, threshold_px_, &optimized) || !Admit(&optimized)) {
+    return false;
+  }
+  *model = optimized;
+  return true;
+}
+
+// No two matches of a camera pair near one another in the first image.
+bool FramePairSolver::IsSpread(const int* sample) const {
+  const double limit2 = options_.min_sample_distance_px * options_.min_sample_distance_px;
+  for (int i = 0; i < solver_.sample_size; ++i) {
+    const Match& a = matches_.matches()[sample[i]];
+    for (int j = 0; j < i; ++j) {
+      const Match& b = matches_.matches()[sample[j]];
+      if (a.camera1 == b.camera1 && a.camera2 == b.camera2 &&
+          (a.pixel1 - b.pixel1).squaredNorm() < limit2) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+void FramePairSolver::ResolveSignAndMaybeScale(double threshold, Model* model) const {
+  if (ScaleIsNoise(*model)) {
+    ResolveSignAndScale(sign_subset_, threshold, model);
+  } else {
+    ResolveSign(sign_subset_, threshold, model);
+  }
+}
+
+bool FramePairSolver::OptimizeOn(const GroupedMatches& matches, SmallEngine* engine,
+                                 double threshold, Model* model) const {
+  SmallEngineOptions options;
+  options.loss_scale = threshold;
+  options.inverse_scale = ScaleIsNoise(*model);
+  matches.SelectInliers(*model, threshold, &squared_errors_, &inliers_);
+  return engine->Minimize(options, inliers_, model);
+}
+
+}  // namespace rigel

@@ -1,0 +1,94 @@
+// The solver concept of ransac.h for a frame pair and a solver of the catalogue.
+#ifndef RIGEL_REFINE_SEARCH_FRAME_PAIR_SOLVER_H_
+#define RIGEL_REFINE_SEARCH_FRAME_PAIR_SOLVER_H_
+
+#include <optional>
+#include <vector>
+
+#include "rigel/core/alignment.h"
+#include "rigel/core/grouped_matches.h"
+#include "rigel/core/random.h"
+#include "rigel/core/score_kernel.h"
+#include "rigel/minimal/catalogue.h"
+#include "rigel/minimal/ransac/prosac.h"
+#include "rigel/minimal/ransac/ransac.h"
+#include "rigel/minimal/solvers/prepared_matches.h"
+#include "rigel/minimal/solvers/solutions.h"
+#include "rigel/refine/least_squares/small_engine.h"
+
+namespace rigel {
+
+class FramePairSolver {
+ public:
+  using Model = Solution;
+  using Solutions = rigel::Solutions;
+
+  // `matches` and `options` must outlive this object.
+  FramePairSolver(const SolverInfo& solver, const GroupedMatches& matches,
+                  const Alignment& alignment, const RansacOptions& options);
+  FramePairSolver(const FramePairSolver&) = delete;
+  FramePairSolver& operator=(const FramePairSolver&) = delete;
+
+  // False if the matches allow no sample of the solver's kind.
+  bool CanDraw() const { return sampler_.CanDraw(); }
+
+  int num_data() const { return scored_.size(); }
+  int sample_size() const { return solver_.sample_size; }
+  bool Draw(Random* random, int* sample) const;
+  int MinimalSolver(const int* sample, Solutions* solutions) const {
+    prepared_.Prepare(sample, solver_.sample_size);
+    return solver_.solve(prepared_, sample, solutions);
+  }
+  double Work(int num_solutions) const;
+  // Does not look at depths, which only add to the score; the sign of t matters little to it.
+  double QuickScore(const Model& model, double bound) const {
+    return scored_.Score(model, threshold_px_, bound, nullptr, Loss());
+  }
+  bool BailsOut(const Model& model, double best) const;
+  double Score(const Model& model, double bound, int* inliers) const {
+    return scored_.ScoreInFront(model, threshold_px_, bound, inliers, Loss());
+  }
+  bool Admit(Model* model) const;
+  bool Similar(const Model& a, const Model& b) const;
+  double LooseScore(const Model& model, double bound) const {
+    return subset_.Score(model, kLooseFactor * threshold_px_, bound, nullptr);
+  }
+  // In two steps, at the loose threshold and at the threshold.
+  bool OptimizeLoosely(Model* model) const;
+  bool LocalOptimize(Model* model) const;
+
+ private:
+  // A motion prior that is off by half a degree moves points by a few pixels.
+  static constexpr double kLooseFactor = 4.0;
+
+  const LossTable* Loss() const { return loss_.has_value() ? &*loss_ : nullptr; }
+  bool IsSpread(const int* sample) const;
+  // Such matches and a minimal sample hardly determine |t|.
+  bool ScaleIsNoise(const Model& model) const { return intra_only_ || !model.has_scale; }
+  void ResolveSignAndMaybeScale(double threshold, Model* model) const;
+  bool OptimizeOn(const GroupedMatches& matches, SmallEngine* engine, double threshold,
+                  Model* model) const;
+
+  const SolverInfo& solver_;
+  const GroupedMatches& matches_;
+  GroupedMatches scored_subset_;  // empty if all are scored
+  const GroupedMatches& scored_;
+  GroupedMatches subset_;
+  GroupedMatches drawn_subset_;
+  GroupedMatches sign_subset_;
+  mutable PreparedMatches prepared_;
+  mutable ProsacSampler sampler_;
+  const RansacOptions& options_;
+  std::optional<LossTable> loss_;
+  GroupedMatches optimized_;
+  mutable SmallEngine loose_engine_;
+  mutable SmallEngine engine_;
+  double threshold_px_;
+  mutable std::vector<double> squared_errors_;
+  mutable std::vector<char> inliers_;
+  bool intra_only_ = true;
+};
+
+}  // namespace rigel
+
+#endif  // RIGEL_REFINE_SEARCH_FRAME_PAIR_SOLVER_H_

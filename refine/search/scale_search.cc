@@ -1,0 +1,143 @@
+#include "rigel/refine/search/scale_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "rigel/refine/least_squares/small_engine.h"
+#include "rigel/refine/least_squares/uncertainty.h"
+#include "rigel/refine/search/sign_and_scale.h"
+
+namespace rigel {
+namespace {
+
+constexpr int kMaxLengths = 12;
+constexpr double kStep = 3.0;
+constexpr double kHopeless = 0.7;
+constexpr double kFar = 1000.0;
+// The rotation found with a wrong |t| is off by a few sigma.
+constexpr double kLooseFactor = 4.0;
+
+// So many tell one minimum from another, and so many where the minima are.
+constexpr size_t kSubset = 200;
+constexpr size_t kCoarseSubset = 100;
+// So many lengths are followed to their minima.
+constexpr size_t kPolished = 3;
+// And of these only with a score that so large a share of outliers makes.
+constexpr double kInReach = 0.1;
+
+struct Candidate {
+  double length = 0.0;  // the start's
+  double score = 0.0;
+  Pose motion;
+};
+
+double ShortestLength(const GroupedMatches& matches, const Eigen::Matrix3d& R) {
+  double shortest = 0.0;
+  for (const MatchGroup& group : matches.groups()) {
+    const Eigen::Vector3d& s1 = matches.rig().cameras[group.camera1].s;
+    const Eigen::Vector3d& s2 = matches.rig().cameras[group.camera2].s;
+    const double baseline = (R * s1 - s2).norm();
+    shortest = std::max(shortest, (group.camera1 == group.camera2 ? 0.5 : 0.03) * baseline);
+  }
+  return shortest;
+}
+
+}  // namespace
+
+bool SearchScale(const GroupedMatches& matches, double threshold_px, double noise_px, Pose* pose) {
+  const double norm = pose->t.norm();
+  double length = ShortestLength(matches, pose->R);
+  if (!(norm > 0) || !(length > 0)) return false;
+  const Eigen::Vector3d direction = pose->t / norm;
+  const GroupedMatches subset = matches.EvenSubset(kSubset);
+  const GroupedMatches coarse = matches.EvenSubset(kCoarseSubset);
+  SmallEngine engine(subset), coarse_engine(coarse);
+  std::vector<double> errors;
+  std::vector<char> mask;
+  const std::vector<double> all(coarse.size(), 1.0);
+
+  // Shortest first, in the end one so long that the arms do not matter.
+  std::vector<double> lengths;
+  const double share = coarse.size() / static_cast<double>(matches.size());
+  for (int k = 0; k < kMaxLengths; ++k, length *= kStep) {
+    Pose at = *pose;
+    at.t = length * direction;
+    const Matrix6d information =
+        SampsonInformation(coarse, all, at) / (share * noise_px * noise_px);
+    if (RelativeScaleSigma(information, at) > kHopeless) break;
+    lengths.push_back(length);
+  }
+  lengths.push_back(std::max(kFar * ShortestLength(matches, pose->R), kStep * length));
+
+  const auto score_of = [&](const GroupedMatches& scored, const Pose& motion) {
+    return scored.ScoreInFront(motion, threshold_px, std::numeric_limits<double>::infinity(),
+                               nullptr);
+  };
+  const auto optimize = [&](const GroupedMatches& with, SmallEngine* solver, double threshold,
+                            Pose* motion) {
+    SmallEngineOptions options;
+    options.inverse_scale = true;
+    options.loss_scale = threshold;
+    with.SelectInliers(*motion, threshold, &errors, &mask);
+    return solver->Minimize(options, mask, motion);
+  };
+
+  // From each length loosely, then from the best few of these and from the longest in full.
+  std::vector<Candidate> candidates;
+  const auto polish = [&](Candidate* candidate) {
+    for (int pass = 0; pass < 2; ++pass) {
+      if (!optimize(subset, &engine, threshold_px, &candidate->motion)) break;
+    }
+    candidate->score = score_of(subset, candidate->motion);
+  };
+  const auto from_length = [&](double from) {
+    Candidate candidate;
+    candidate.length = from;
+    candidate.motion = *pose;
+    candidate.motion.t = from * direction;
+    ResolveSign(coarse, kLooseFactor * threshold_px, &candidate.motion);
+    optimize(coarse, &coarse_engine, kLooseFactor * threshold_px, &candidate.motion);
+    candidate.score = score_of(subset, candidate.motion);
+    return candidate;
+  };
+  const double outlier = threshold_px * threshold_px;
+  const double start_score = score_of(subset, *pose);
+  Candidate longest = from_length(lengths.back());
+  polish(&longest);
+  // Where one without arms and a start that has them fit alike, the arms tell nothing.
+  const bool within = lengths.size() > 1 && norm <= lengths[lengths.size() - 2];
+  if (!within || std::abs(start_score - longest.score) >= outlier) {
+    for (size_t k = 0; k + 1 < lengths.size(); ++k) candidates.push_back(from_length(lengths[k]));
+  }
+  const auto by_score = [](const Candidate& x, const Candidate& y) { return x.score < y.score; };
+  std::stable_sort(candidates.begin(), candidates.end(), by_score);
+  size_t kept = 0;
+  while (kept < std::min(kPolished, candidates.size()) &&
+         candidates[kept].score <= candidates[0].score + kInReach * outlier * subset.size()) {
+    ++kept;
+  }
+  candidates.resize(kept);
+  for (Candidate& candidate : candidates) polish(&candidate);
+  candidates.push_back(longest);
+  // The start takes its place among the lengths; longest first.
+  candidates.push_back({norm, start_score, *pose});
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& x, const Candidate& y) { return x.length > y.length; });
+  double best = std::numeric_limits<double>::infinity();
+  Pose found = *pose;
+  for (const Candidate& candidate : candidates) {
+    if (!(candidate.score < best - outlier)) continue;
+    best = candidate.score;
+    found = candidate.motion;
+  }
+  // What the subset prefers must not be worse for all.
+  if (found.t == pose->t || !(score_of(matches, found) < score_of(matches, *pose) + outlier)) {
+    return false;
+  }
+  *pose = found;
+  return true;
+}
+
+}  // namespace rigel

@@ -1,0 +1,227 @@
+// The small least-squares engine against Refine(): one cost, one minimum.
+#include "rigel/refine/least_squares/small_engine.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "rigel/refine/refine.h"
+#include "rigel/test/refine/refine_scene.h"
+
+namespace rigel {
+namespace {
+
+std::vector<char> AllOf(const GroupedMatches& matches) {
+  return std::vector<char>(matches.size(), 1);
+}
+
+double Cost(const EpipolarResiduals& residuals, LossKind kind, double scale, const Pose& pose) {
+  std::vector<GroupLinearization> groups;
+  residuals.Linearize(pose, nullptr, &groups);
+  const auto loss = MakeLoss(kind, scale);
+  double sum = 0.0;
+  for (int k = 0; k < residuals.size(); ++k) {
+    const double r = residuals.Evaluate(groups, k, 0, nullptr);
+    double rho[3] = {r * r, 1, 0};
+    if (loss) loss->Evaluate(r * r, rho);
+    sum += rho[0];
+  }
+  return sum;
+}
+
+TEST(PackedMatches, HoldTheMatchesOfWeightAboveZeroGroupByGroup) {
+  SceneOptions scene;
+  scene.inter_share = 0.5;
+  scene.num_matches = 50;
+  const FramePair pair = ScenePair(scene, 0);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  std::vector<double> weights(matches.size());
+  for (size_t k = 0; k < weights.size(); ++k) weights[k] = 0.5 * (k % 3);
+  PackedMatches packed;
+  packed.Set(matches, weights);
+  ASSERT_EQ(packed.groups.size(), matches.groups().size());
+  int n = 0;
+  for (size_t g = 0; g < packed.groups.size(); ++g) {
+    const MatchGroup& group = matches.groups()[g];
+    const PixelArrays pixels = matches.Pixels(group);
+    int in_group = 0;
+    for (int k = 0; k < group.size; ++k) {
+      if (weights[group.begin + k] == 0.0) continue;
+      EXPECT_EQ(packed.weights[n++], weights[group.begin + k]);
+      EXPECT_EQ(packed.groups[g].x1[in_group], pixels.x1[k]);
+      EXPECT_EQ(packed.groups[g].y2[in_group++], pixels.y2[k]);
+    }
+    EXPECT_EQ(packed.groups[g].size, in_group);
+  }
+}
+
+TEST(SmallEngine, ReachesTheMinimumOfRefine) {
+  for (const LossKind kind :
+       {LossKind::kNone, LossKind::kHuber, LossKind::kCauchy, LossKind::kTukey}) {
+    for (int index = 0; index < 20; ++index) {
+      SCOPED_TRACE(std::string(LossName(kind)) + ", pair " + std::to_string(index));
+      SceneOptions options;
+      options.inter_share = 0.5;
+      const FramePair pair = ScenePair(options, index);
+      Random random = Random::Stream(3, index);
+      const Pose start = StartNear(*pair.truth, 0.05, 0.02, &random);
+      const GroupedMatches matches(pair.rig, pair.matches);
+
+      RefineOptions refine;
+      refine.threshold_px = 1e3;  // the mask is all matches
+      refine.noise_px = 0.5;
+      refine.loss = kind;
+      refine.loss_scale_sigmas = 3.0;
+      refine.max_num_iterations = 500;
+      refine.scale = ScaleMode::kFree;
+      refine.epipole_weights = false;
+      Pose by_refine = start;
+      const RefineSummary summary = Refine(refine, matches, pair.prior, &by_refine);
+      ASSERT_TRUE(summary.IsSolutionUsable());
+      ASSERT_EQ(summary.num_inliers, matches.size());
+
+      const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
+      for (const bool inverse_scale : {false, true}) {
+        SmallEngine engine(matches);
+        SmallEngineOptions small;
+        small.loss = kind;
+        small.loss_scale = 1.5;
+        small.max_num_iterations = 100;
+        small.tolerance = 1e-14;
+        small.inverse_scale = inverse_scale;
+        Pose by_engine = start;
+        ASSERT_TRUE(engine.Minimize(small, AllOf(matches), &by_engine));
+        // Tukey's cost is flat where its weights leave next to nothing of a match.
+        const double flat = kind == LossKind::kTukey ? 10.0 : 1.0;
+        EXPECT_LT(Difference(by_engine, by_refine).head<3>().norm(), flat * 2e-6);
+        EXPECT_LT(Difference(by_engine, by_refine).tail<3>().norm(), flat * 2e-5);
+        EXPECT_NEAR(Cost(residuals, kind, 1.5, by_engine), 2.0 * summary.final_cost,
+                    1e-6 * summary.final_cost);
+      }
+    }
+  }
+}
+
+// The default of local optimization: outliers weigh nothing, and four steps gain much.
+TEST(SmallEngine, ATruncatedLossIgnoresOutliers) {
+  double before = 0.0, after = 0.0;
+  for (int index = 0; index < 20; ++index) {
+    SceneOptions options;
+    options.inter_share = 0.5;
+    options.outlier_share = 0.3;
+    const FramePair pair = ScenePair(options, index);
+    Random random = Random::Stream(4, index);
+    Pose pose = StartNear(*pair.truth, 0.2, 0.03, &random);
+    before += RotationErrorDeg(*pair.truth, pose);
+    const GroupedMatches matches(pair.rig, pair.matches);
+    const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
+    SmallEngine engine(matches);
+    const double cost = Cost(residuals, LossKind::kTruncated, 1.5, pose);
+    ASSERT_TRUE(engine.Minimize(SmallEngineOptions(), AllOf(matches), &pose));
+    EXPECT_LT(Cost(residuals, LossKind::kTruncated, 1.5, pose), cost);
+    EXPECT_NEAR(pose.R.determinant(), 1.0, 1e-12);
+    after += RotationErrorDeg(*pair.truth, pose);
+  }
+  EXPECT_LT(after, 0.6 * before);
+}
+
+// The minimum over a mask is that of its matches alone.
+TEST(SmallEngine, LeavesOutWhatTheMaskLeavesOut) {
+  SceneOptions options;
+  options.inter_share = 0.5;
+  const FramePair pair = ScenePair(options, 6);
+  Random random(6);
+  const Pose start = StartNear(*pair.truth, 0.05, 0.02, &random);
+  const GroupedMatches all(pair.rig, pair.matches);
+  std::vector<char> mask(all.size());
+  std::vector<Match> kept;
+  for (int k = 0; k < all.size(); ++k) {
+    mask[k] = k % 3 == 0;
+    if (mask[k]) kept.push_back(all.matches()[k]);
+  }
+  const GroupedMatches fewer(pair.rig, kept);
+  SmallEngine masked(all), alone(fewer);
+  SmallEngineOptions small;
+  small.loss = LossKind::kCauchy;
+  small.max_num_iterations = 100;
+  small.tolerance = 1e-14;
+  Pose a = start, b = start, c = start;
+  ASSERT_TRUE(masked.Minimize(small, mask, &a));
+  ASSERT_TRUE(alone.Minimize(small, AllOf(fewer), &b));
+  ASSERT_TRUE(masked.Minimize(small, AllOf(all), &c));
+  EXPECT_LT(Difference(a, b).norm(), 1e-8);
+  EXPECT_GT(Difference(a, c).norm(), 1e-4);
+  Pose none = start;
+  EXPECT_FALSE(masked.Minimize(small, std::vector<char>(all.size(), 0), &none));
+  EXPECT_EQ(none.t, start.t);
+}
+
+TEST(SmallEngine, KeepsNothingFromCallToCall) {
+  SceneOptions options;
+  options.inter_share = 0.5;
+  const FramePair pair = ScenePair(options, 1);
+  Random random(5);
+  const Pose start = StartNear(*pair.truth, 0.05, 0.02, &random);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
+  SmallEngine engine(matches);
+  Pose first = start;
+  ASSERT_TRUE(engine.Minimize(SmallEngineOptions(), AllOf(matches), &first));
+  SmallEngineOptions other;
+  other.inverse_scale = true;
+  other.loss = LossKind::kHuber;
+  Pose elsewhere = StartNear(*pair.truth, 0.5, 0.2, &random);
+  engine.Minimize(other, AllOf(matches), &elsewhere);
+  Pose again = start;
+  ASSERT_TRUE(engine.Minimize(SmallEngineOptions(), AllOf(matches), &again));
+  EXPECT_EQ(first.R, again.R);
+  EXPECT_EQ(first.t, again.t);
+}
+
+TEST(SmallEngine, SaysSoAndLeavesThePoseIfNothingImproves) {
+  SceneOptions options;
+  options.inter_share = 0.5;
+  const FramePair pair = ScenePair(options, 2);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
+  SmallEngine engine(matches);
+  const auto expect_unchanged = [&](const SmallEngineOptions& small, const Pose& start) {
+    Pose pose = start;
+    EXPECT_FALSE(engine.Minimize(small, AllOf(matches), &pose));
+    // By bytes, so that NaN equals NaN.
+    EXPECT_EQ(std::memcmp(pose.R.data(), start.R.data(), sizeof(double) * 9), 0);
+    EXPECT_EQ(std::memcmp(pose.t.data(), start.t.data(), sizeof(double) * 3), 0);
+  };
+  SmallEngineOptions none;
+  none.max_num_iterations = 0;
+  expect_unchanged(none, *pair.truth);
+
+  // No match is within the truncation: the cost is flat.
+  Pose away = *pair.truth;
+  away.R = ExpSO3(Eigen::Vector3d(1.5, 0, 0)) * away.R;
+  SmallEngineOptions narrow;
+  narrow.loss_scale = 1e-9;
+  expect_unchanged(narrow, away);
+
+  SmallEngineOptions inverse;
+  inverse.inverse_scale = true;
+  Pose still = *pair.truth;
+  still.t.setZero();
+  expect_unchanged(inverse, still);
+
+  Pose nan = *pair.truth;
+  nan.t.x() = std::numeric_limits<double>::quiet_NaN();
+  expect_unchanged(SmallEngineOptions(), nan);
+  expect_unchanged(inverse, nan);
+
+  const GroupedMatches empty(pair.rig, {});
+  SmallEngine idle(empty);
+  Pose pose = *pair.truth;
+  EXPECT_FALSE(idle.Minimize(SmallEngineOptions(), {}, &pose));
+  EXPECT_EQ(pose.t, pair.truth->t);
+}
+
+}  // namespace
+}  // namespace rigel
