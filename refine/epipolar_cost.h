@@ -37,8 +37,9 @@
 // and -t where scale is not observable; where it is, a start of the wrong sign mostly comes back,
 // but may end in a false minimum near t = 0. Intra-camera matches alone hardly determine the length
 // of t_21 (docs/conventions.md): hold it by other residuals or by a manifold.
-// Refine() counts matches near an epipole less (EpipoleWeights() of refine/least_squares/uncertainty.h); here
-// every match counts in full: give those a larger sigma_px, sigma / weight, for the same.
+// Refine() counts matches near an epipole less (EpipoleWeights() of
+// refine/least_squares/uncertainty.h); here every match counts in full: give those a larger
+// sigma_px, sigma / weight, for the same.
 //
 // Errors: a factory returns null if sigma_px is not within 1e-12 and 1e12, the rig is not valid
 // (Rig::IsValid), the match names a camera that is not there, a pixel is not finite or `order` is

@@ -12,9 +12,9 @@
 #include <gflags/gflags.h>
 
 #include "rigel/core/parallel.h"
-#include "rigel/problems/io/kitti_poses.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/whole_file.h"
+#include "rigel/problems/scenes/driven_motion.h"
 #include "rigel/problems/scenes/synthetic.h"
 #include "rigel/tools/tool.h"
 

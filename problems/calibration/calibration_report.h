@@ -8,7 +8,7 @@
 #include <string>
 
 #include "rigel/problems/calibration/prior_calibration.h"
-#include "rigel/problems/evaluation/report.h"
+#include "rigel/problems/io/report_options.h"
 
 namespace rigel {
 

@@ -5,20 +5,17 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "rigel/core/frame_pair.h"
 #include "rigel/problems/evaluation/comparison.h"
 #include "rigel/problems/evaluation/shard.h"
+#include "rigel/problems/io/report_options.h"
 #include "rigel/problems/io/version.h"
 #include "rigel/problems/trajectories/trajectory.h"
 #include "rigel/refine/estimate_motion.h"
 
 namespace rigel {
-
-// Names and values of the options that made a report, in the order given.
-using ReportOptions = std::vector<std::pair<std::string, std::string>>;
 
 // All that a report of rigel_compare is made of.
 struct ComparisonReport {

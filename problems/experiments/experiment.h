@@ -20,7 +20,7 @@
 
 #include "rigel/core/frame_pair.h"
 #include "rigel/problems/evaluation/comparison.h"
-#include "rigel/problems/io/kitti_poses.h"
+#include "rigel/problems/scenes/driven_motion.h"
 
 namespace rigel {
 

@@ -4,7 +4,7 @@
 //   ROOT/sequences/NAME/image_0, image_1  000000.png, ...; the grey stereo pair
 //   ROOT/sequences/NAME/image_2, image_3  the colour pair, taken where there is no grey one
 //   ROOT/sequences/NAME/times.txt         a time a frame, seconds; optional
-//   ROOT/poses/NAME.txt                   ground truth, see rigel/problems/io/kitti_poses.h; optional
+//   ROOT/poses/NAME.txt                   ground truth, see problems/io/kitti_poses.h; optional
 //
 // The body is the left grey camera (camera 0 of KITTI), the one whose poses the ground truth gives;
 // the colour cameras are placed relative to it. "Down" is the Y axis of the first camera frame,

@@ -1,8 +1,8 @@
 // Text files of numbers, line by line.
 //
 // A file may be compressed by gzip, and a byte order mark of UTF-8 is skipped. Text in another
-// encoding, a file larger than kMaxInputBytes (rigel/problems/io/input_file.h) and one that cannot be
-// read are refused with a message that names the file.
+// encoding, a file larger than kMaxInputBytes (rigel/problems/io/input_file.h) and one that cannot
+// be read are refused with a message that names the file.
 #ifndef RIGEL_PROBLEMS_IO_TEXT_LINES_H_
 #define RIGEL_PROBLEMS_IO_TEXT_LINES_H_
 

@@ -1,0 +1,36 @@
+// Motions of real drives, to simulate: those of trajectories of the KITTI odometry benchmark
+// (problems/io/kitti_poses.h).
+#ifndef RIGEL_PROBLEMS_SCENES_DRIVEN_MOTION_H_
+#define RIGEL_PROBLEMS_SCENES_DRIVEN_MOTION_H_
+
+#include <string>
+#include <vector>
+
+#include "rigel/core/frame_pair.h"
+#include "rigel/core/pose.h"
+#include "rigel/problems/scenes/synthetic.h"
+
+namespace rigel {
+
+// Where a frame pair's motion comes from.
+struct DrivenMotion {
+  std::string sequence;
+  Pose world_from_body1, world_from_body2;
+
+  Pose body2_from_body1() const { return world_from_body2.Inverse() * world_from_body1; }
+};
+
+// Of the motions between consecutive poses the first and each `every`-th after it, of each of the
+// files *.txt of a directory, in byte order of their names, which name the sequences; the body is
+// the left camera. False with a message if a file cannot be read or there is no motion.
+bool ReadDrivenMotions(const std::string& directory, int every, std::vector<DrivenMotion>* motions,
+                       std::string* error);
+
+// Pair number `index` of the scene with that motion and sequence.
+// "Down" is the world's Y: that of the first camera frame, which is level to a degree or two.
+bool MakeDrivenPair(const SceneOptions& options, int index, const DrivenMotion& motion,
+                    FramePair* pair, std::string* error);
+
+}  // namespace rigel
+
+#endif  // RIGEL_PROBLEMS_SCENES_DRIVEN_MOTION_H_
