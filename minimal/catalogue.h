@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "rigel/core/prior.h"
-#include "rigel/minimal/ransac/sampler.h"
 #include "rigel/minimal/solvers/prepared_matches.h"
 #include "rigel/minimal/solvers/solutions.h"
 
@@ -18,6 +17,17 @@ namespace rigel {
 // safe across threads; non-finite input gives no solution or non-finite ones.
 using SolveFunction = int (*)(const PreparedMatches& matches, const int* sample,
                               Solutions* solutions);
+
+// Which matches a solver's sample may hold.
+enum class SampleKind {
+  // Any. A sample from one camera pair says nothing about scale, so where there are several pairs
+  // the first two matches come from different ones.
+  kSpread,
+  // All of one camera, the same at both times.
+  kOneCamera,
+  // All but the last of one camera pair, the last from another where there is one.
+  kOnePairPlusOne,
+};
 
 struct SolverInfo {
   const char* name;  // as flags and reports spell it

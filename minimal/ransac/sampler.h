@@ -6,19 +6,9 @@
 
 #include "rigel/core/grouped_matches.h"
 #include "rigel/core/random.h"
+#include "rigel/minimal/catalogue.h"
 
 namespace rigel {
-
-// Which matches a solver's sample may hold.
-enum class SampleKind {
-  // Any. A sample from one camera pair says nothing about scale, so where there are several pairs
-  // the first two matches come from different ones.
-  kSpread,
-  // All of one camera, the same at both times.
-  kOneCamera,
-  // All but the last of one camera pair, the last from another where there is one.
-  kOnePairPlusOne,
-};
 
 // Every loop is bounded.
 class Sampler {

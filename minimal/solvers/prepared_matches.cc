@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "rigel/core/grouped_matches.h"
+
 namespace rigel {
 namespace {
 

@@ -16,12 +16,13 @@
 #include <Eigen/Core>
 
 #include "rigel/core/alignment.h"
-#include "rigel/core/grouped_matches.h"
 #include "rigel/core/match.h"
 #include "rigel/core/rays.h"
 #include "rigel/core/rig.h"
 
 namespace rigel {
+
+class GroupedMatches;
 
 // Below this squared sine of the angle between its aligned rays a match does not move beyond
 // rounding. A sample whose matches all stay says nothing of translation: solvers return no

@@ -1,4 +1,6 @@
-#include "rigel/minimal/ransac/ransac.h"
+#include "rigel/minimal/ransac/ransac_options.h"
+
+#include <cmath>
 
 namespace rigel {
 
