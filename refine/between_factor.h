@@ -29,7 +29,6 @@
 
 #include "rigel/core/eigen_types.h"
 #include "rigel/core/pose.h"
-#include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/refine/refine.h"
 
 namespace rigel {

@@ -13,10 +13,11 @@
 #include "rigel/core/grouped_matches.h"
 #include "rigel/core/pixel_unit.h"
 #include "rigel/core/rig_centre.h"
+#include "rigel/minimal/catalogue.h"
 #include "rigel/minimal/solvers/two_point_ackermann.h"
-#include "rigel/refine/rig_doubts.h"
 #include "rigel/refine/search/chance.h"
 #include "rigel/refine/search/motion_search.h"
+#include "rigel/refine/solver_choice.h"
 
 namespace rigel {
 namespace {
@@ -204,7 +205,13 @@ MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pai
       estimate.stopped == StopReason::kNone) {
     EstimateOptions again = given;
     again.time_limit = stop.SecondsLeft();
-    estimate.rig_doubts = FindRigDoubts(again, pair, estimate);
+    again.check_rig = false;
+    again.ransac.max_iterations = std::min(given.ransac.max_iterations, kMaxSwapIterations);
+    const auto inliers_with = [&again](const FramePair& other) {
+      const MotionEstimate e = EstimateMotion(again, other);
+      return e.status == EstimateStatus::kSuccess ? e.num_inliers : 0;
+    };
+    estimate.rig_doubts = FindRigDoubts(pair, options.refine.scale, estimate.refine, inliers_with);
   }
   return estimate;
 }

@@ -10,11 +10,11 @@
 
 #include "rigel/core/frame_pair.h"
 #include "rigel/core/stop.h"
-#include "rigel/minimal/catalogue.h"
-#include "rigel/minimal/ransac/ransac.h"
+#include "rigel/minimal/ransac/ransac_options.h"
 #include "rigel/minimal/solvers/solutions.h"
 #include "rigel/refine/refine.h"
-#include "rigel/refine/solver_choice.h"
+#include "rigel/refine/rig_doubts.h"
+#include "rigel/refine/search/doubt.h"
 
 namespace rigel {
 
@@ -54,20 +54,6 @@ enum class EstimateStatus {
 };
 
 const char* EstimateStatusName(EstimateStatus status);
-
-enum class RigDoubtKind {
-  kFrozen,   // camera1 shows the same image twice
-  kFewFit,   // few of the matches between camera1 and camera2 fit
-  kSwapped,  // more would fit if the two were swapped
-};
-
-// What in a pair contradicts its rig, for a person to look into (rig_doubts.h).
-struct RigDoubt {
-  RigDoubtKind kind = RigDoubtKind::kFewFit;
-  int camera1 = 0;  // at most camera2
-  int camera2 = 0;
-  std::string message;  // "cameras 0-1: 12 of 760 fit; are they swapped, ..."
-};
 
 struct MotionEstimate {
   EstimateStatus status = EstimateStatus::kNotRun;

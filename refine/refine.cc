@@ -10,14 +10,17 @@
 #include "rigel/core/alignment.h"
 #include "rigel/core/angles.h"
 #include "rigel/core/frame_pair.h"
+#include "rigel/core/grouped_matches.h"
 #include "rigel/core/median.h"
 #include "rigel/core/pixel_unit.h"
 #include "rigel/core/rays.h"
 #include "rigel/core/rig_centre.h"
 #include "rigel/refine/least_squares/ceres_engine.h"
+#include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/least_squares/motion_parameterization.h"
 #include "rigel/refine/least_squares/prior_residuals.h"
 #include "rigel/refine/least_squares/small_engine.h"
+#include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/refine/search/chance.h"
 #include "rigel/refine/search/group_noise.h"
 #include "rigel/refine/search/inlier_selection.h"
@@ -321,23 +324,21 @@ bool Refiner::Solve(bool scale_free, Pose* pose) {
                      options_.residual == ResidualKind::kSampson &&
                      options_.form != RefineForm::kBundle;
   std::array<double, 6> parameters = {0, 0, 0, 0, 0, 0};
-  LeastSquaresSummary result;
-  const auto* progress = options_.progress ? &progress_ : nullptr;
-  if (small) {
-    SmallEngineOptions engine_options;
-    engine_options.loss = options_.loss;
-    engine_options.loss_scale = options_.loss_scale_sigmas * noise_px_;
-    engine_options.max_num_iterations = options_.max_num_iterations;
-    // The last step is some 1e-5 standard deviations long.
-    engine_options.tolerance = 1e-12;
-    engine_options.stop = &stop_;
-    engine_options.progress = progress;
-    result = engine_.Solve(engine_options, parameterization, weights_, prior, noise_px_,
-                           parameters.data());
-  } else {
-    result = SolveWithCeres(options_, matches_, parameterization, weights_, prior, noise_px_, *pose,
-                            &stop_, progress, parameters.data());
-  }
+  LeastSquaresOptions engine_options;
+  engine_options.loss = options_.loss;
+  engine_options.loss_scale = options_.loss_scale_sigmas * noise_px_;
+  engine_options.max_num_iterations = options_.max_num_iterations;
+  engine_options.stop = &stop_;
+  engine_options.progress = options_.progress ? &progress_ : nullptr;
+  // The last step is some 1e-5 standard deviations long.
+  engine_options.tolerance = 1e-12;
+  engine_options.residual = options_.residual;
+  engine_options.bundle = options_.form == RefineForm::kBundle;
+  const LeastSquaresSummary result =
+      small ? engine_.Solve(engine_options, parameterization, weights_, prior, noise_px_,
+                            parameters.data())
+            : SolveWithCeres(engine_options, matches_, parameterization, weights_, prior, noise_px_,
+                             *pose, parameters.data());
   Pose refined;
   parameterization.Evaluate(parameters.data(), &refined, nullptr);
   if (!result.usable || !refined.AllFinite() || !std::isfinite(result.final_cost)) {

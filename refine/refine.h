@@ -14,18 +14,17 @@
 #include <Eigen/Core>
 
 #include "rigel/core/eigen_types.h"
-#include "rigel/core/grouped_matches.h"
 #include "rigel/core/match.h"
 #include "rigel/core/pixel_unit.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/prior.h"
 #include "rigel/core/rig.h"
 #include "rigel/core/stop.h"
-#include "rigel/refine/least_squares/epipolar_residuals.h"
-#include "rigel/refine/least_squares/loss.h"
-#include "rigel/refine/least_squares/uncertainty.h"
+#include "rigel/refine/least_squares/least_squares.h"
 
 namespace rigel {
+
+class GroupedMatches;
 
 // Which parameters are free; every form uses the exact rotation.
 enum class RefineForm {

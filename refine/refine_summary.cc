@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "rigel/core/angles.h"
+#include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/refine/refine.h"
 
 namespace rigel {

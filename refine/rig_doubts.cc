@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "rigel/core/pixel_unit.h"
+#include "rigel/refine/least_squares/uncertainty.h"
 
 namespace rigel {
 namespace {
@@ -19,9 +20,9 @@ struct Fit {
   double Share() const { return inliers / static_cast<double>(rows); }
 };
 
-std::map<Cameras, Fit> FitsOf(const MotionEstimate& estimate) {
+std::map<Cameras, Fit> FitsOf(const RefineSummary& refine) {
   std::map<Cameras, Fit> fits;
-  for (const CameraPairFit& f : estimate.refine.camera_pairs) {
+  for (const CameraPairFit& f : refine.camera_pairs) {
     Fit& fit = fits[std::minmax(f.camera1, f.camera2)];
     fit.rows += f.rows;
     fit.inliers += f.inliers;
@@ -63,15 +64,12 @@ std::vector<int> FrozenCameras(const FramePair& pair) {
 }
 
 // How many matches fit the better of the two swaps; nothing if neither is better by far.
-std::optional<int> InliersIfSwapped(const EstimateOptions& given, const FramePair& pair,
-                                    const MotionEstimate& estimate, const Cameras& cameras) {
+std::optional<int> InliersIfSwapped(const FramePair& pair, int num_inliers, const Cameras& cameras,
+                                    const std::function<int(const FramePair&)>& inliers_with) {
   constexpr double kFewerOutliers = 0.75;
   constexpr int kMoreInliers = 6;
-  EstimateOptions options = given;
-  options.check_rig = false;
-  options.ransac.max_iterations = std::min(given.ransac.max_iterations, kMaxSwapIterations);
   const int total = static_cast<int>(pair.matches.size());
-  const int outliers = total - estimate.num_inliers;
+  const int outliers = total - num_inliers;
   int best = 0;
   const auto try_swapped = [&](bool intrinsics) {
     FramePair swapped = pair;
@@ -79,8 +77,7 @@ std::optional<int> InliersIfSwapped(const EstimateOptions& given, const FramePai
     RigCamera& b = swapped.rig.cameras[cameras.second];
     std::swap(a, b);
     if (!intrinsics) std::swap(a.intrinsics, b.intrinsics);
-    const MotionEstimate other = EstimateMotion(options, swapped);
-    if (other.status == EstimateStatus::kSuccess) best = std::max(best, other.num_inliers);
+    best = std::max(best, inliers_with(swapped));
   };
   try_swapped(false);
   const PinholeCamera& first = pair.rig.cameras[cameras.first].intrinsics;
@@ -88,7 +85,7 @@ std::optional<int> InliersIfSwapped(const EstimateOptions& given, const FramePai
   const bool alike = first.fx == second.fx && first.fy == second.fy && first.cx == second.cx &&
                      first.cy == second.cy;
   if (!alike) try_swapped(true);
-  if (best < estimate.num_inliers + kMoreInliers || total - best > kFewerOutliers * outliers) {
+  if (best < num_inliers + kMoreInliers || total - best > kFewerOutliers * outliers) {
     return std::nullopt;
   }
   return best;
@@ -96,8 +93,9 @@ std::optional<int> InliersIfSwapped(const EstimateOptions& given, const FramePai
 
 }  // namespace
 
-std::vector<RigDoubt> FindRigDoubts(const EstimateOptions& options, const FramePair& pair,
-                                    const MotionEstimate& estimate) {
+std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, ScaleMode scale,
+                                    const RefineSummary& refine,
+                                    const std::function<int(const FramePair&)>& inliers_with) {
   std::vector<RigDoubt> doubts;
   const std::vector<int> frozen = FrozenCameras(pair);
   const auto is_frozen = [&](int camera) {
@@ -108,7 +106,7 @@ std::vector<RigDoubt> FindRigDoubts(const EstimateOptions& options, const FrameP
                       "camera " + std::to_string(k) +
                           " shows the same image twice while others move: is it frozen?"});
   }
-  std::map<Cameras, Fit> fits = FitsOf(estimate);
+  std::map<Cameras, Fit> fits = FitsOf(refine);
   double most = 0.0;
   int inter_inliers = 0;
   std::optional<Cameras> most_rows;  // between two cameras
@@ -148,23 +146,22 @@ std::vector<RigDoubt> FindRigDoubts(const EstimateOptions& options, const FrameP
     }
     few_by_themselves.push_back(cameras.first);
   }
-  const RefineSummary& refine = estimate.refine;
   const bool length_is_missing = refine.IsSolutionUsable() && refine.RigDirectionKnown() &&
-                                 !refine.scale_free && options.refine.scale == ScaleMode::kAuto &&
+                                 !refine.scale_free && scale == ScaleMode::kAuto &&
                                  refine.camera_pairs.size() > 1 && inter_inliers >= kMinDoubtRows &&
-                                 10 * inter_inliers >= estimate.num_inliers;
+                                 10 * inter_inliers >= refine.num_inliers;
   if (to_swap.empty() && length_is_missing && frozen.empty()) to_swap.push_back(*most_rows);
   // One pair of cameras that is swapped makes others fit badly: enough to look at three.
   constexpr size_t kMaxSwaps = 3;
   for (size_t k = 0; k < std::min(to_swap.size(), kMaxSwaps); ++k) {
-    const auto inliers = InliersIfSwapped(options, pair, estimate, to_swap[k]);
+    const auto inliers = InliersIfSwapped(pair, refine.num_inliers, to_swap[k], inliers_with);
     if (!inliers) continue;
     const auto [a, b] = to_swap[k];
     doubts.push_back({RigDoubtKind::kSwapped, a, b,
                       "with cameras " + std::to_string(a) + " and " + std::to_string(b) +
                           " swapped " + std::to_string(*inliers) + " of " +
                           std::to_string(pair.matches.size()) + " matches fit instead of " +
-                          std::to_string(estimate.num_inliers) +
+                          std::to_string(refine.num_inliers) +
                           ": are they, or is the sign of their baseline wrong?"});
   }
   return doubts;

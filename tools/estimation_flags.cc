@@ -14,6 +14,7 @@
 #include "rigel/core/pixel_unit.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/message_groups.h"
+#include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/solver_choice.h"
 #include "rigel/tools/tool.h"
 

@@ -18,6 +18,7 @@
 #include "rigel/problems/io/table.h"
 #include "rigel/problems/scenes/synthetic.h"
 #include "rigel/refine/least_squares/epipolar_residuals.h"
+#include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/least_squares/small_engine.h"
 #include "rigel/refine/refine.h"
 
@@ -110,7 +111,7 @@ std::vector<RefineBenchmarkRow> BenchmarkRefinement(const RefineBenchmarkOptions
                        [loss](const Problem& problem, Pose* pose, int* iterations) {
                          SmallEngine engine(problem.matches);
                          const std::vector<char> mask(problem.matches.size(), 1);
-                         SmallEngineOptions small;
+                         LeastSquaresOptions small;
                          small.loss = loss;
                          small.loss_scale = 4.0 * kNoisePx;
                          small.max_num_iterations = 20;

@@ -12,9 +12,11 @@
 #include <nlohmann/json.hpp>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/grouped_matches.h"
 #include "rigel/core/metrics.h"
 #include "rigel/core/random.h"
 #include "rigel/core/statistics.h"
+#include "rigel/minimal/ransac/sampler.h"
 #include "rigel/problems/io/report_json.h"
 #include "rigel/problems/io/table.h"
 #include "rigel/problems/scenes/synthetic.h"

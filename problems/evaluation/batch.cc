@@ -2,6 +2,7 @@
 
 #include <atomic>
 
+#include "rigel/minimal/catalogue.h"
 #include "rigel/problems/io/match_file.h"
 
 namespace rigel {

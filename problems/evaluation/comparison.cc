@@ -10,7 +10,9 @@
 #include "rigel/core/metrics.h"
 #include "rigel/core/parallel.h"
 #include "rigel/core/rig_centre.h"
+#include "rigel/minimal/catalogue.h"
 #include "rigel/problems/evaluation/cramer_rao.h"
+#include "rigel/refine/least_squares/uncertainty.h"
 
 namespace rigel {
 namespace {

@@ -1,11 +1,14 @@
 #include "rigel/refine/least_squares/ceres_engine.h"
 
 #include <deque>
+#include <functional>
 #include <memory>
 
 #include <ceres/ceres.h>
 
+#include "rigel/core/stop.h"
 #include "rigel/refine/least_squares/epipolar_residuals.h"
+#include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/least_squares/reprojection_cost.h"
 
 namespace rigel {
@@ -95,39 +98,40 @@ class PriorCost : public ceres::CostFunction {
   double unit_;  // the image noise: residuals of matches are in pixels, the prior's in sigmas
 };
 
+bool Asked(Stop* stop) { return stop != nullptr && stop->Asked(); }
+
 // Tells of each iteration and ends the solution when it is asked to.
 class IterationReport : public ceres::IterationCallback {
  public:
   IterationReport(Stop* stop, const std::function<void(int, double)>* progress)
-      : stop_(*stop), progress_(progress) {}
+      : stop_(stop), progress_(progress) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
     if (progress_ != nullptr) (*progress_)(iteration.iteration, iteration.cost);
-    return stop_.Asked() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    return Asked(stop_) ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:
-  Stop& stop_;
+  Stop* stop_;
   const std::function<void(int, double)>* progress_;
 };
 
 }  // namespace
 
-LeastSquaresSummary SolveWithCeres(const RefineOptions& options, const GroupedMatches& matches,
+LeastSquaresSummary SolveWithCeres(const LeastSquaresOptions& options,
+                                   const GroupedMatches& matches,
                                    const MotionParameterization& parameterization,
                                    const std::vector<double>& weights, const PriorResiduals& prior,
-                                   double noise_px, const Pose& start, Stop* stop,
-                                   const std::function<void(int, double)>* progress,
-                                   double* parameters) {
+                                   double prior_unit, const Pose& start, double* parameters) {
   const int size = parameterization.size();
   const EpipolarResiduals residuals(matches, options.residual);
   SharedEvaluation shared(parameterization, residuals, parameters, stop);
   std::deque<MatchCost> costs;
-  PriorCost prior_cost(prior, shared, noise_px, size);
+  PriorCost prior_cost(prior, shared, prior_unit, size);
   // The algebraic residual is in metres: a scale in pixels means nothing to it.
   const std::unique_ptr<ceres::LossFunction> loss =
-      options.residual == ResidualKind::kAlgebraic && options.form != RefineForm::kBundle
+      options.residual == ResidualKind::kAlgebraic && !options.bundle
           ? nullptr
-          : MakeLoss(options.loss, options.loss_scale_sigmas * noise_px);
+          : MakeLoss(options.loss, options.loss_scale);
 
   ceres::Problem::Options problem_options;
   problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -136,20 +140,18 @@ LeastSquaresSummary SolveWithCeres(const RefineOptions& options, const GroupedMa
   problem_options.evaluation_callback = &shared;
   ceres::Problem problem(problem_options);
   constexpr int kStopEvery = 1024;
-  const bool bundle = options.form == RefineForm::kBundle;
   std::deque<ReprojectionCost> reprojections;
   // In one piece: Ceres orders the blocks of a group by their addresses.
   std::vector<ReprojectionCost::Point> points;
-  if (bundle) points.reserve(weights.size());
+  if (options.bundle) points.reserve(weights.size());
   for (int k = 0; k < matches.size(); ++k) {
     // The start is what there is by then.
-    if (k % kStopEvery == 0 && stop->Asked()) {
+    if (k % kStopEvery == 0 && Asked(options.stop)) {
       LeastSquaresSummary summary;
       summary.usable = true;
       return summary;
     }
-    if (weights[k] == 0.0) continue;
-    if (bundle) {
+    if (options.bundle) {
       const Match& match = matches.matches()[k];
       points.push_back(ReprojectionCost::Triangulate(matches.rig(), match, start));
       reprojections.emplace_back(matches.rig(), match, shared.pose, shared.basis, size, weights[k],
@@ -163,8 +165,9 @@ LeastSquaresSummary SolveWithCeres(const RefineOptions& options, const GroupedMa
   if (prior.size() > 0) problem.AddResidualBlock(&prior_cost, nullptr, parameters);
 
   ceres::Solver::Options solver_options;
-  solver_options.linear_solver_type = bundle ? ceres::DENSE_SCHUR : ceres::DENSE_NORMAL_CHOLESKY;
-  if (bundle) {
+  solver_options.linear_solver_type =
+      options.bundle ? ceres::DENSE_SCHUR : ceres::DENSE_NORMAL_CHOLESKY;
+  if (options.bundle) {
     // The points are eliminated first.
     auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
     for (ReprojectionCost::Point& point : points) ordering->AddElementToGroup(point.data(), 0);
@@ -181,7 +184,7 @@ LeastSquaresSummary SolveWithCeres(const RefineOptions& options, const GroupedMa
   // Undetermined points must not make a step fail: Ceres would log that.
   solver_options.min_lm_diagonal = 1e-4;
   solver_options.max_trust_region_radius = 1e6;
-  IterationReport report(stop, progress);
+  IterationReport report(options.stop, options.progress);
   solver_options.callbacks.push_back(&report);
   ceres::Solver::Summary ceres_summary;
   ceres::Solve(solver_options, &problem, &ceres_summary);

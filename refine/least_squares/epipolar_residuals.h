@@ -18,11 +18,10 @@
 
 #include "rigel/core/grouped_matches.h"
 #include "rigel/core/pose.h"
+#include "rigel/refine/least_squares/least_squares.h"
 #include "rigel/refine/least_squares/motion_parameterization.h"
 
 namespace rigel {
-
-enum class ResidualKind { kSampson, kAngular, kAlgebraic };
 
 // The matrix of one camera pair at one motion, and its derivatives.
 struct GroupLinearization {

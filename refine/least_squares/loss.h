@@ -7,11 +7,9 @@
 
 #include <ceres/loss_function.h>
 
-namespace rigel {
+#include "rigel/refine/least_squares/least_squares.h"
 
-// rho(s) of the squared residual s with scale a: kNone s; kHuber, kCauchy, kTukey as in Ceres;
-// kTruncated min(s, a^2).
-enum class LossKind { kNone, kHuber, kCauchy, kTukey, kTruncated };
+namespace rigel {
 
 const char* LossName(LossKind kind);
 

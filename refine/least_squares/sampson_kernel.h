@@ -9,7 +9,7 @@
 
 #include "rigel/core/cpu_path.h"
 #include "rigel/core/score_kernel.h"
-#include "rigel/refine/least_squares/loss.h"
+#include "rigel/refine/least_squares/least_squares.h"
 
 namespace rigel {
 

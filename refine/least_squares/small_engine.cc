@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "rigel/core/stop.h"
 #include "rigel/refine/least_squares/normal_equations.h"
 
 namespace rigel {
@@ -18,7 +19,7 @@ using ParameterMatrix =
 // Cost, gradient and curvature at one point, and how to get them.
 class ParameterEquations {
  public:
-  ParameterEquations(const SmallEngineOptions& options, const GroupedMatches& matches,
+  ParameterEquations(const LeastSquaresOptions& options, const GroupedMatches& matches,
                      const MotionParameterization& parameterization, const PackedMatches& packed,
                      const PriorResiduals& prior, double prior_unit)
       : matches_(matches),
@@ -119,7 +120,7 @@ void PackedMatches::Set(const GroupedMatches& matches, const std::vector<double>
   }
 }
 
-LeastSquaresSummary SmallEngine::Solve(const SmallEngineOptions& options,
+LeastSquaresSummary SmallEngine::Solve(const LeastSquaresOptions& options,
                                        const MotionParameterization& parameterization,
                                        const std::vector<double>& weights,
                                        const PriorResiduals& prior, double prior_unit,
@@ -180,7 +181,7 @@ LeastSquaresSummary SmallEngine::Solve(const SmallEngineOptions& options,
   return summary;
 }
 
-bool SmallEngine::Minimize(const SmallEngineOptions& options, const std::vector<char>& mask,
+bool SmallEngine::Minimize(const LeastSquaresOptions& options, const std::vector<char>& mask,
                            Pose* pose) {
   num_iterations_ = 0;
   MotionParameterization parameterization;

@@ -7,33 +7,15 @@
 #ifndef RIGEL_REFINE_LEAST_SQUARES_SMALL_ENGINE_H_
 #define RIGEL_REFINE_LEAST_SQUARES_SMALL_ENGINE_H_
 
-#include <functional>
 #include <vector>
 
 #include "rigel/core/grouped_matches.h"
 #include "rigel/core/pose.h"
-#include "rigel/core/stop.h"
-#include "rigel/refine/least_squares/loss.h"
+#include "rigel/refine/least_squares/least_squares.h"
 #include "rigel/refine/least_squares/motion_parameterization.h"
 #include "rigel/refine/least_squares/prior_residuals.h"
 
 namespace rigel {
-
-struct SmallEngineOptions {
-  LossKind loss = LossKind::kTruncated;
-  double loss_scale = 1.5;  // pixels, > 0
-  int max_num_iterations = 4;
-  // Converged once a step promises to lower the cost by less than this fraction of it. Of n
-  // residuals the step is then about sqrt(n tolerance) standard deviations long, and it is taken.
-  double tolerance = 1e-4;
-  // Minimize(): TranslationForm::kInverseScale instead of a free t, for matches that hardly
-  // determine |t|.
-  bool inverse_scale = false;
-  // Asked before each iteration (null: never): it ends with the best parameters by then.
-  Stop* stop = nullptr;
-  // Called after each iteration with its number, from 1, and the cost. Null: not at all.
-  const std::function<void(int, double)>* progress = nullptr;
-};
 
 // The matches of weight above zero, group by group: what is left out takes no time.
 struct PackedMatches {
@@ -42,14 +24,6 @@ struct PackedMatches {
 
   std::vector<double> x1, y1, x2, y2, weights;
   std::vector<PixelArrays> groups;  // into the arrays above
-};
-
-struct LeastSquaresSummary {
-  bool usable = false;  // finite from the start to the end
-  bool converged = false;
-  int num_iterations = 0;
-  double initial_cost = 0.0;  // 1/2 sum rho(r^2), with the prior's 1/2 r^2
-  double final_cost = 0.0;
 };
 
 // Keeps its memory from call to call: no heap after the first.
@@ -63,7 +37,7 @@ class SmallEngine {
   // Minimizes over `parameters` (in: the start, out: the best found), parameterization.size() of
   // them. `weights` multiply the residuals (grouped order; 0 leaves a match out). The residuals of
   // `prior` at the motion are multiplied by `prior_unit`, pixels, and take no loss.
-  LeastSquaresSummary Solve(const SmallEngineOptions& options,
+  LeastSquaresSummary Solve(const LeastSquaresOptions& options,
                             const MotionParameterization& parameterization,
                             const std::vector<double>& weights, const PriorResiduals& prior,
                             double prior_unit, double* parameters);
@@ -71,7 +45,7 @@ class SmallEngine {
   // Over rotation and translation and the matches with mask[k] != 0 (grouped order; as many as
   // the matches). False, and `pose` unchanged, if no step lowers the cost or the result is not
   // finite.
-  bool Minimize(const SmallEngineOptions& options, const std::vector<char>& mask, Pose* pose);
+  bool Minimize(const LeastSquaresOptions& options, const std::vector<char>& mask, Pose* pose);
 
   int num_iterations() const { return num_iterations_; }  // of the last call
 

@@ -124,7 +124,7 @@ void FramePairSolver::ResolveSignAndMaybeScale(double threshold, Model* model) c
 
 bool FramePairSolver::OptimizeOn(const GroupedMatches& matches, SmallEngine* engine,
                                  double threshold, Model* model) const {
-  SmallEngineOptions options;
+  LeastSquaresOptions options;
   options.loss_scale = threshold;
   options.inverse_scale = ScaleIsNoise(*model);
   matches.SelectInliers(*model, threshold, &squared_errors_, &inliers_);

@@ -11,7 +11,7 @@
 #include "rigel/minimal/catalogue.h"
 #include "rigel/minimal/ransac/ransac.h"
 #include "rigel/minimal/solvers/solutions.h"
-#include "rigel/refine/solver_choice.h"
+#include "rigel/refine/search/doubt.h"
 
 namespace rigel {
 

@@ -77,7 +77,7 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
   };
   const auto optimize = [&](const GroupedMatches& with, SmallEngine* solver, double threshold,
                             Pose* motion) {
-    SmallEngineOptions options;
+    LeastSquaresOptions options;
     options.inverse_scale = true;
     options.loss_scale = threshold;
     with.SelectInliers(*motion, threshold, &errors, &mask);

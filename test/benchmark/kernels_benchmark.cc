@@ -11,11 +11,14 @@
 #include <benchmark/benchmark.h>
 
 #include "rigel/core/grouped_matches.h"
+#include "rigel/core/random.h"
 #include "rigel/minimal/catalogue.h"
+#include "rigel/minimal/ransac/sampler.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/scenes/synthetic.h"
 #include "rigel/refine/least_squares/epipolar_residuals.h"
 #include "rigel/refine/least_squares/small_engine.h"
+#include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/refine/refine.h"
 
 namespace rigel {
@@ -233,7 +236,7 @@ void BM_SmallEngine(benchmark::State& state) {
   for (auto _ : state) {
     Pose pose = *pair.truth;
     pose.R = ExpSO3({0.01, -0.01, 0.01}) * pose.R;
-    SmallEngineOptions options;
+    LeastSquaresOptions options;
     options.loss = LossKind::kCauchy;
     benchmark::DoNotOptimize(engine.Minimize(options, mask, &pose));
   }

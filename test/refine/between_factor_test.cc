@@ -11,7 +11,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-#include "rigel/test/core/random_vector.h"
+#include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {

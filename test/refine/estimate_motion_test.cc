@@ -12,7 +12,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "rigel/core/grouped_matches.h"
 #include "rigel/core/parallel.h"
+#include "rigel/minimal/catalogue.h"
 #include "rigel/problems/scenes/prior_source.h"
 #include "rigel/test/refine/refine_scene.h"
 

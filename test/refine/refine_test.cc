@@ -17,6 +17,8 @@
 #include "rigel/core/parallel.h"
 #include "rigel/core/rays.h"
 #include "rigel/refine/estimate_motion.h"
+#include "rigel/refine/least_squares/loss.h"
+#include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {

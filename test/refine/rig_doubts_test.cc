@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "rigel/refine/estimate_motion.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "rigel/core/epipolar.h"
+#include "rigel/core/grouped_matches.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/random.h"
 

@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "rigel/minimal/catalogue.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/test/refine/refine_scene.h"
 

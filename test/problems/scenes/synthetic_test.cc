@@ -13,6 +13,7 @@
 
 #include "rigel/core/cheirality.h"
 #include "rigel/core/epipolar.h"
+#include "rigel/core/grouped_matches.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/refine/estimate_motion.h"
 #include "rigel/test/refine/refine_scene.h"

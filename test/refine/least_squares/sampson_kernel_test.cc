@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "rigel/refine/least_squares/epipolar_residuals.h"
+#include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/least_squares/normal_equations.h"
 #include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/test/refine/refine_scene.h"

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "rigel/refine/least_squares/epipolar_residuals.h"
+#include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/refine.h"
 #include "rigel/test/refine/refine_scene.h"
 
@@ -85,7 +87,7 @@ TEST(SmallEngine, ReachesTheMinimumOfRefine) {
       const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
       for (const bool inverse_scale : {false, true}) {
         SmallEngine engine(matches);
-        SmallEngineOptions small;
+        LeastSquaresOptions small;
         small.loss = kind;
         small.loss_scale = 1.5;
         small.max_num_iterations = 100;
@@ -119,7 +121,7 @@ TEST(SmallEngine, ATruncatedLossIgnoresOutliers) {
     const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
     SmallEngine engine(matches);
     const double cost = Cost(residuals, LossKind::kTruncated, 1.5, pose);
-    ASSERT_TRUE(engine.Minimize(SmallEngineOptions(), AllOf(matches), &pose));
+    ASSERT_TRUE(engine.Minimize(LeastSquaresOptions(), AllOf(matches), &pose));
     EXPECT_LT(Cost(residuals, LossKind::kTruncated, 1.5, pose), cost);
     EXPECT_NEAR(pose.R.determinant(), 1.0, 1e-12);
     after += RotationErrorDeg(*pair.truth, pose);
@@ -143,7 +145,7 @@ TEST(SmallEngine, LeavesOutWhatTheMaskLeavesOut) {
   }
   const GroupedMatches fewer(pair.rig, kept);
   SmallEngine masked(all), alone(fewer);
-  SmallEngineOptions small;
+  LeastSquaresOptions small;
   small.loss = LossKind::kCauchy;
   small.max_num_iterations = 100;
   small.tolerance = 1e-14;
@@ -168,14 +170,14 @@ TEST(SmallEngine, KeepsNothingFromCallToCall) {
   const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
   SmallEngine engine(matches);
   Pose first = start;
-  ASSERT_TRUE(engine.Minimize(SmallEngineOptions(), AllOf(matches), &first));
-  SmallEngineOptions other;
+  ASSERT_TRUE(engine.Minimize(LeastSquaresOptions(), AllOf(matches), &first));
+  LeastSquaresOptions other;
   other.inverse_scale = true;
   other.loss = LossKind::kHuber;
   Pose elsewhere = StartNear(*pair.truth, 0.5, 0.2, &random);
   engine.Minimize(other, AllOf(matches), &elsewhere);
   Pose again = start;
-  ASSERT_TRUE(engine.Minimize(SmallEngineOptions(), AllOf(matches), &again));
+  ASSERT_TRUE(engine.Minimize(LeastSquaresOptions(), AllOf(matches), &again));
   EXPECT_EQ(first.R, again.R);
   EXPECT_EQ(first.t, again.t);
 }
@@ -187,25 +189,25 @@ TEST(SmallEngine, SaysSoAndLeavesThePoseIfNothingImproves) {
   const GroupedMatches matches(pair.rig, pair.matches);
   const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
   SmallEngine engine(matches);
-  const auto expect_unchanged = [&](const SmallEngineOptions& small, const Pose& start) {
+  const auto expect_unchanged = [&](const LeastSquaresOptions& small, const Pose& start) {
     Pose pose = start;
     EXPECT_FALSE(engine.Minimize(small, AllOf(matches), &pose));
     // By bytes, so that NaN equals NaN.
     EXPECT_EQ(std::memcmp(pose.R.data(), start.R.data(), sizeof(double) * 9), 0);
     EXPECT_EQ(std::memcmp(pose.t.data(), start.t.data(), sizeof(double) * 3), 0);
   };
-  SmallEngineOptions none;
+  LeastSquaresOptions none;
   none.max_num_iterations = 0;
   expect_unchanged(none, *pair.truth);
 
   // No match is within the truncation: the cost is flat.
   Pose away = *pair.truth;
   away.R = ExpSO3(Eigen::Vector3d(1.5, 0, 0)) * away.R;
-  SmallEngineOptions narrow;
+  LeastSquaresOptions narrow;
   narrow.loss_scale = 1e-9;
   expect_unchanged(narrow, away);
 
-  SmallEngineOptions inverse;
+  LeastSquaresOptions inverse;
   inverse.inverse_scale = true;
   Pose still = *pair.truth;
   still.t.setZero();
@@ -213,13 +215,13 @@ TEST(SmallEngine, SaysSoAndLeavesThePoseIfNothingImproves) {
 
   Pose nan = *pair.truth;
   nan.t.x() = std::numeric_limits<double>::quiet_NaN();
-  expect_unchanged(SmallEngineOptions(), nan);
+  expect_unchanged(LeastSquaresOptions(), nan);
   expect_unchanged(inverse, nan);
 
   const GroupedMatches empty(pair.rig, {});
   SmallEngine idle(empty);
   Pose pose = *pair.truth;
-  EXPECT_FALSE(idle.Minimize(SmallEngineOptions(), {}, &pose));
+  EXPECT_FALSE(idle.Minimize(LeastSquaresOptions(), {}, &pose));
   EXPECT_EQ(pose.t, pair.truth->t);
 }
 
