@@ -1,7 +1,14 @@
-# Installs the CMake package: find_package(rigel 0.1 REQUIRED [COMPONENTS core minimal refine problems]).
+# Installs the headers and the CMake package:
+#   find_package(rigel 0.1 REQUIRED [COMPONENTS core minimal refine problems])
 include(CMakePackageConfigHelpers)
 
 set(RIGEL_INSTALL_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/rigel)
+
+include(cmake/RigelHeaders.cmake)
+foreach(header IN LISTS RIGEL_HEADERS)
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rigel/${folder})
+endforeach()
 
 install(EXPORT rigelTargets NAMESPACE rigel:: DESTINATION ${RIGEL_INSTALL_CMAKEDIR})
 

@@ -23,9 +23,9 @@ endfunction()
 file(RELATIVE_PATH RIGEL_BIN_TO_LIB ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
 set(CMAKE_INSTALL_RPATH $ORIGIN $ORIGIN/${RIGEL_BIN_TO_LIB})
 
-# rigel_library(core SOURCES a.cc b.cc DEPENDS rigel::x): target rigel_core with alias rigel::core,
-# exported as rigel::core. BUILD_DEPENDS are header-only libraries that its sources alone include: the installed
-# package does without them.
+# rigel_library(core SOURCES a.cc b.cc DEPENDS rigel::x): target rigel_core with alias rigel::core, exported as
+# rigel::core. BUILD_DEPENDS are header-only libraries that its sources alone include: the installed package does
+# without them. Which headers are installed is said in RigelHeaders.cmake.
 function(rigel_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS;BUILD_DEPENDS" ${ARGN})
   set(target rigel_${name})
@@ -47,6 +47,4 @@ function(rigel_library name)
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
           RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rigel/${name}
-          FILES_MATCHING PATTERN "*.h")
 endfunction()

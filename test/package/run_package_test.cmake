@@ -29,6 +29,15 @@ endfunction()
 
 run(${CMAKE_COMMAND} --install ${RIGEL_BINARY_DIR} --config ${RIGEL_CONFIG} --prefix ${prefix})
 
+# The headers that are meant to be, and no others.
+include(${CMAKE_CURRENT_LIST_DIR}/../../cmake/RigelHeaders.cmake)
+file(GLOB_RECURSE headers RELATIVE ${prefix}/include/rigel ${prefix}/include/rigel/*)
+list(SORT headers)
+list(SORT RIGEL_HEADERS)
+if(NOT headers STREQUAL RIGEL_HEADERS)
+  message(FATAL_ERROR "installed are\n${headers}\nand not\n${RIGEL_HEADERS}")
+endif()
+
 # No installed file may point back to the source or the build tree.
 file(GLOB_RECURSE package_files ${prefix}/*.cmake)
 if(NOT package_files)
