@@ -211,7 +211,9 @@ MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pai
       const MotionEstimate e = EstimateMotion(again, other);
       return e.status == EstimateStatus::kSuccess ? e.num_inliers : 0;
     };
-    estimate.rig_doubts = FindRigDoubts(pair, options.refine.scale, estimate.refine, inliers_with);
+    const bool prior_is_doubted = estimate.doubtful && search.solver->prior != PriorKind::kNone;
+    estimate.rig_doubts =
+        FindRigDoubts(pair, options.refine.scale, prior_is_doubted, estimate.refine, inliers_with);
   }
   return estimate;
 }

@@ -93,7 +93,7 @@ std::optional<int> InliersIfSwapped(const FramePair& pair, int num_inliers, cons
 
 }  // namespace
 
-std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, ScaleMode scale,
+std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, ScaleMode scale, bool prior_is_doubted,
                                     const RefineSummary& refine,
                                     const std::function<int(const FramePair&)>& inliers_with) {
   std::vector<RigDoubt> doubts;
@@ -119,11 +119,8 @@ std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, ScaleMode scale,
   }
   std::vector<Cameras> to_swap;
   std::vector<int> few_by_themselves;
-  // A prior that is wrong makes a right rig fit badly.
-  const bool prior_is_cause =
-      estimate.doubtful && FindSolver(estimate.solver)->prior != PriorKind::kNone;
   for (const auto& [cameras, fit] : fits) {
-    if (prior_is_cause) break;
+    if (prior_is_doubted) break;
     const bool few = fit.rows >= kMinDoubtRows && most >= kMostFit && fit.Share() < kFewFit * most;
     if (!few || is_frozen(cameras.first) || is_frozen(cameras.second)) continue;
     const bool intra = cameras.first == cameras.second;

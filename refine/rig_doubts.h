@@ -43,10 +43,11 @@ inline constexpr double kMostFit = 0.4;
 //     poses and intrinsics. Tried where the matches between them do not fit, or where they fit and
 //     do not determine |t| either, although the rig moves: a mirrored baseline is explained away by
 //     a motion so long that no baseline matters.
+// Where the prior is doubted it explains what fits badly, and that is not told.
 // `inliers_with` estimates the motion of a pair anew and returns how many matches fit, 0 if there
 // is no motion; it need not look long: kMaxSwapIterations of RANSAC.
 inline constexpr int kMaxSwapIterations = 500;
-std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, ScaleMode scale,
+std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, ScaleMode scale, bool prior_is_doubted,
                                     const RefineSummary& refine,
                                     const std::function<int(const FramePair&)>& inliers_with);
 

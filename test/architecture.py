@@ -35,7 +35,7 @@ MAY_USE = {
         "core minimal refine/least_squares refine/search refine problems/io problems/scenes problems/trajectories",
     "problems/benchmarks":
         "core minimal minimal/ransac refine/least_squares refine problems/io problems/scenes problems/evaluation",
-    "problems/experiments": "core minimal minimal/ransac problems/io problems/scenes problems/evaluation",
+    "problems/experiments": "core minimal problems/io problems/scenes problems/evaluation",
     "tools":
         "core minimal refine/least_squares refine problems/io problems/scenes problems/images problems/trajectories "
         "problems/calibration problems/evaluation problems/benchmarks problems/experiments",

@@ -14,6 +14,8 @@
 namespace rigel {
 namespace {
 
+bool Asked(Stop* stop) { return stop != nullptr && stop->Asked(); }
+
 // What all residual blocks share at one point: the motion and the linearized camera pairs.
 class SharedEvaluation : public ceres::EvaluationCallback {
  public:
@@ -22,10 +24,10 @@ class SharedEvaluation : public ceres::EvaluationCallback {
       : parameterization_(parameterization),
         residuals_(residuals),
         parameters_(parameters),
-        stop_(*stop) {}
+        stop_(stop) {}
 
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override {
-    stopped = stopped || stop_.Asked();
+    stopped = stopped || Asked(stop_);
     if (stopped) return;
     if (!new_evaluation_point && (has_jacobians_ || !evaluate_jacobians)) return;
     parameterization_.Evaluate(parameters_, &pose, &basis);
@@ -42,7 +44,7 @@ class SharedEvaluation : public ceres::EvaluationCallback {
   const MotionParameterization& parameterization_;
   const EpipolarResiduals& residuals_;
   const double* parameters_;
-  Stop& stop_;
+  Stop* stop_;
   bool has_jacobians_ = false;
 };
 
@@ -98,8 +100,6 @@ class PriorCost : public ceres::CostFunction {
   double unit_;  // the image noise: residuals of matches are in pixels, the prior's in sigmas
 };
 
-bool Asked(Stop* stop) { return stop != nullptr && stop->Asked(); }
-
 // Tells of each iteration and ends the solution when it is asked to.
 class IterationReport : public ceres::IterationCallback {
  public:
@@ -124,7 +124,7 @@ LeastSquaresSummary SolveWithCeres(const LeastSquaresOptions& options,
                                    double prior_unit, const Pose& start, double* parameters) {
   const int size = parameterization.size();
   const EpipolarResiduals residuals(matches, options.residual);
-  SharedEvaluation shared(parameterization, residuals, parameters, stop);
+  SharedEvaluation shared(parameterization, residuals, parameters, options.stop);
   std::deque<MatchCost> costs;
   PriorCost prior_cost(prior, shared, prior_unit, size);
   // The algebraic residual is in metres: a scale in pixels means nothing to it.
