@@ -151,6 +151,7 @@ LeastSquaresSummary SolveWithCeres(const LeastSquaresOptions& options,
       summary.usable = true;
       return summary;
     }
+    if (weights[k] == 0.0) continue;
     if (options.bundle) {
       const Match& match = matches.matches()[k];
       points.push_back(ReprojectionCost::Triangulate(matches.rig(), match, start));

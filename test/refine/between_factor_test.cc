@@ -12,6 +12,7 @@
 #include <Eigen/LU>
 
 #include "rigel/refine/least_squares/uncertainty.h"
+#include "rigel/test/core/random_vector.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {

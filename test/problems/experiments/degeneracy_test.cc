@@ -17,6 +17,7 @@
 #include "rigel/core/metrics.h"
 #include "rigel/core/random.h"
 #include "rigel/minimal/catalogue.h"
+#include "rigel/minimal/ransac/sampler.h"
 #include "rigel/minimal/solvers/seventeen_point_li.h"
 #include "rigel/test/refine/refine_scene.h"
 

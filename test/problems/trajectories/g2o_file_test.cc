@@ -13,6 +13,7 @@
 #include "rigel/problems/scenes/synthetic.h"
 #include "rigel/refine/between_factor.h"
 #include "rigel/refine/least_squares/uncertainty.h"
+#include "rigel/test/core/random_vector.h"
 #include "rigel/test/problems/trajectories/g2o_reader.h"
 
 namespace rigel {
