@@ -6,8 +6,8 @@
 The directory is a clip's, by default $RIGEL_REAL_DATA/kitti_stereo_06 (exit code 77 without it),
 the build directory $RIGEL_BUILD_DIR or build/release. Chains the `stereo_odometry` comments and
 the `truth` lines of its match files by its own code, has rigel_estimate write the refined
-trajectory (KITTI and TUM), reads both as evo does, and compares the errors of the motion over the whole clip, X_last = R X_first + t: of t over the length of the
-path, and of R. Exit code 0 if the refined one's are at most 1.2 times those of the stereo odometry;
+trajectory (KITTI and TUM), reads both as evo does, and compares the errors of the motion over the
+whole clip, X_last = R X_first + t: of t over the length of the path, and of R. Exit code 0 if the refined one's are at most 1.2 times those of the stereo odometry;
 1 if not, or if something is wrong. Printed, not judged: the same of the inverse motion, the last
 pose in the first frame, where the truth's error at the first frame counts by the whole length.
 Python's standard library only.
