@@ -9,6 +9,8 @@
 #include "rigel/core/grouped_matches.h"
 #include "rigel/minimal/catalogue.h"
 #include "rigel/minimal/ransac/ransac.h"
+#include "rigel/minimal/ransac/sampler.h"
+#include "rigel/minimal/solvers/prepared_matches.h"
 #include "rigel/problems/scenes/synthetic.h"
 
 namespace rigel {
