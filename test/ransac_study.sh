@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Measures RANSAC with the refinement and writes docs/ransac_tables.md (two hours, of which the hostile pairs take most; one core, which should have nothing
-# else to do): test/ransac_study.sh [BUILD_DIR [PAIRS [MATCHES]]]; MATCHES is a directory of match files of real images.
+# Measures RANSAC with the refinement and writes docs/ransac_tables.md (two hours, most of them for the hostile pairs;
+# RIGEL_HOSTILE_PAIRS=20 makes it ten minutes). Wants a core that has nothing else to do.
+#
+#   test/ransac_study.sh [BUILD_DIR [PAIRS [MATCHES]]]     MATCHES: a directory of match files of real images
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 bin=$(cd "${1:-$root/build/release}/bin" && pwd)
-hostile=${RIGEL_HOSTILE_PAIRS:-1000}  # an hour and a half; 20 of them two minutes
+hostile=${RIGEL_HOSTILE_PAIRS:-1000}
 pairs=${2:-200}
 matches=${3:-}
 out=$root/docs/ransac_tables.md
