@@ -65,6 +65,8 @@ Eigen::Vector3d DefaultDown(const Rig& rig, const std::optional<Eigen::Vector3d>
 }
 
 Eigen::Vector3d DefaultForward(const Rig& rig, const Eigen::Vector3d& down) {
+  // Length of the mean of the optical axes, across down: 1 if all cameras look the same way. Those
+  // of a ring look all around, and their mean is too short to say what is ahead.
   constexpr double kSameWay = 0.5;
   Eigen::Vector3d ahead = Across(MeanOfCameras(rig, 2), down);
   if (!(ahead.norm() > kSameWay)) {

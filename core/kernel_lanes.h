@@ -8,6 +8,7 @@
 
 namespace rigel {
 
+// Doubles: one register with AVX2, two without. The same on all machines, so that sums are, too.
 constexpr int kLanes = 4;
 typedef double Lanes __attribute__((vector_size(kLanes * sizeof(double))));
 

@@ -5,6 +5,8 @@
 namespace rigel {
 
 double PixelUnit(const Rig& rig) {
+  // Pixels. At a shorter focal length a default in pixels is a share of it: of 1.5 px, the default
+  // threshold, 1/300.
   constexpr double kFocal = 450.0;
   double shortest = kFocal;
   for (const RigCamera& camera : rig.cameras) {

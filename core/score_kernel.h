@@ -43,6 +43,7 @@ struct GroupMotion {
 // A loss of r^2 in [0, t2], rising from 0 to t2: its values at k t2 / kBins, and linear between
 // them.
 struct LossTable {
+  // More would follow a loss more closely, and take more of the cache: these are half a kilobyte.
   static constexpr int kBins = 64;
   double values[kBins + 2];  // the last two are t2
 };

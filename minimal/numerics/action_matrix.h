@@ -96,6 +96,8 @@ class RealSolutions {
   static_assert(kSize % 4 == 0);
   // Values of x at once: the rows of one are a chain of operations, and the others fill the time.
   static constexpr int kLanes = 4;
+  // Step, relative to the root and to 0.01 near zero, after which Refine() ends: well above
+  // rounding, and the next step of the secant method would be far smaller.
   static constexpr double kRefined = 1e-12;
 
   static constexpr int Down(int k) { return k & ~3; }

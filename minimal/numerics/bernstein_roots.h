@@ -33,6 +33,7 @@ class RootFinder {
   }
 
  private:
+  // Roots at once in Newton(): the steps of each fill the time of the others.
   static constexpr int kLanes = 4;
 
   using Bracket = polynomial_internal::Bracket;
@@ -47,6 +48,8 @@ class RootFinder {
       double low, width;
       double b[kMax + 1];
     };
+    // Pieces on the stack. It bounds the memory, and is reached only where roots, real or
+    // complex, are closer than 2^-24 of the interval: they count as one.
     constexpr int kMaxLevel = 24;
     Piece stack[kMaxLevel + 2];
     using polynomial_internal::InverseBinomials;

@@ -40,8 +40,11 @@ inline void CosAndSinOfThird(double r, double* cosine, double* sine) {
 // one another. False unless all converge, to different roots.
 template <int N>
 inline bool NewtonFromGoodStarts(const double* c, int count, double* x) {
+  // From good starts each step doubles the digits. What takes more steps than these is left to
+  // isolation, which is slower and misses nothing.
   constexpr int kMaxSteps = 5;
   constexpr double kConverged = 1e-9;  // the next step is of the order of its square
+  // Relative to the root. Closer ones may be one that was found twice, and are left to isolation.
   constexpr double kDistinct = 1e-6;
   const PolynomialInLanes<N> p(c);
   Lanes<N> lane = LanesOf<N>(x, count);
@@ -64,6 +67,8 @@ inline bool NewtonFromGoodStarts(const double* c, int count, double* x) {
 // The real roots of a quartic, to some 1e-7 of the largest, by Ferrari's resolvent; kUndecided
 // where a pair of them may be real or complex.
 inline int QuarticStarts(const double* c, double* x) {
+  // Relative to the terms of each difference below. The sign of a smaller one may be that of the
+  // errors, of which the largest is the 6e-9 of CosAndSinOfThird().
   constexpr double kOpen = 1e-6;
   const double inverse = 1.0 / c[4];
   const double h = 0.25 * c[3] * inverse;
@@ -116,7 +121,10 @@ inline int QuarticStarts(const double* c, double* x) {
 
 // A quintic without its largest root 1 / y, if that is far from the others.
 inline bool SplitFarRoot(const double* c, double* quartic, double* y) {
+  // Of y, where the typical root is near 1: the far root is at least four times as large. The
+  // nearer one is, the more steps it takes; it is left to isolation then.
   constexpr double kFar = 0.25;
+  // Of c[5], which the division may miss by so much: some hundreds of roundings.
   constexpr double kConverged = 1e-13;
   *y = -c[5] / c[4];
   if (!(std::abs(*y) < kFar)) return false;
@@ -142,6 +150,8 @@ inline bool SplitFarRoot(const double* c, double* quartic, double* y) {
 // 1 + b x + g x^2.
 inline bool SplitFarPair(const double* c, double* quartic, double* b, double* g) {
   constexpr int kMaxSteps = 8;  // each divides the error by how far the pair is
+  // Relative change of g and b^2. Not to the last digit, as Newton's method on the sextic itself
+  // follows.
   constexpr double kConverged = 1e-10;
   *g = c[6] / c[4];
   *b = c[5] / c[4];
@@ -178,6 +188,8 @@ inline int RootsInClosedForm(const double* c, double* roots) {
     if (!SplitFarRoot(c, quartic, &y)) return kUndecided;
     roots[count++] = 1.0 / y;
   } else {
+    // Relative to the terms of the discriminant. The sign of a smaller one may be that of the
+    // errors of b and g: the two roots may be real or complex.
     constexpr double kOpen = 1e-6;
     double b, g;
     if (!SplitFarPair(c, quartic, &b, &g)) return kUndecided;

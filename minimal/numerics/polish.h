@@ -13,6 +13,8 @@ namespace rigel {
 // duplicates are dropped. Returns the number of roots.
 template <int N>
 int PolishRoots(const double* c, const double* starts, int num_starts, double* roots) {
+  // At one degree of rotation three are enough. Each doubles the digits: a start that needs more
+  // than these has no root near.
   constexpr int kMaxSteps = 6;
   // Quadratic convergence: the error left is of the order of the step squared.
   constexpr double kConverged = 1e-7;

@@ -23,6 +23,8 @@ int RealRoots(const double* c, double* roots);
 
 namespace polynomial_internal {
 
+// Relative to the largest coefficient. Less is what rounding may have left of a zero, and stands
+// for a root beyond 1e14 or so.
 inline constexpr double kTinyLeading = 1e-14;
 
 template <int N>
@@ -49,6 +51,7 @@ inline void Polish(const double* c, int count, double* roots) {
   const Lanes<N> step = p.NewtonStep(x);
   const Lanes<N> next = x - step;
   const Lanes<N> next_step = p.NewtonStep(next);
+  // Relative to the root. Steps below it are rounding, and need not become smaller.
   constexpr double kRounding = 1e-14;
   constexpr double kSmall = 1e-4;  // more is the doing of a slope that vanishes
   if ((step.abs() <= kSmall * x.abs().maxCoeff()).all() &&
@@ -116,7 +119,7 @@ inline int CubicStarts(const double* c, double* roots) {
   // One root that is far from the other two would drown them, or drown in them, below. It is
   // divided out first, from the end where that is stable; each step divides the error by kFar.
   constexpr double kFar = 1e-4;
-  constexpr int kSteps = 4;
+  constexpr int kSteps = 4;  // kFar^4 is below rounding
   const double c1_2 = c[1] * c[1];
   const double c2_2 = c[2] * c[2];
   if (std::abs(c[3] * c[1]) < kFar * c2_2 &&

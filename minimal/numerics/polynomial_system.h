@@ -25,6 +25,7 @@ namespace rigel::polynomial_system {
 
 constexpr int NumMonomials(int degree) { return (degree + 1) * (degree + 2) * (degree + 3) / 6; }
 
+// The largest degree in the table of monomials: that of the products in 6pt-stewenius.
 inline constexpr int kMaxDegree = 7;
 
 struct MonomialTable {
@@ -248,6 +249,8 @@ class MacaulayMatrix {
 
  private:
   static constexpr int kStride = (kColumns + 3) & ~3;  // of a row, with zeros behind it
+  // Entries that a search for the largest pivot may look at. More searches condition the matrix
+  // better and take more time: rigel_benchmark --solvers=6pt-stewenius prints both effects.
   static constexpr int kMaxSearch = 1000;
   static constexpr int kMaxPivots = kMaxRows < kColumns ? kMaxRows : kColumns;
 

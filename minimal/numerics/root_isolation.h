@@ -135,6 +135,8 @@ inline int SignVariations(const double* b) {
 // Where in (0, 1) to look first for a root, `x` being where some approximation of p has it: away
 // from the ends, where another root may catch the iteration.
 inline double AwayFromEnds(double x) {
+  // Shares of the interval, both of them: what is nearer to an end than kTooNear starts at kNear
+  // from it instead. Any place well inside will do, as the steps are safeguarded.
   constexpr double kNear = 0.0625;
   constexpr double kTooNear = 1e-7;
   if (!(x > kTooNear)) return kNear;

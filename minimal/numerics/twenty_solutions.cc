@@ -8,6 +8,7 @@
 namespace rigel::polynomial_system {
 namespace {
 
+// Solutions, and monomials in the basis of the action matrix.
 constexpr int kSize = 20;
 
 // Loops over parts of rows begin at multiples of four, where that takes in zeros or unused

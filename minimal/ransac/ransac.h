@@ -174,6 +174,8 @@ class RansacRun {
     if (Stopped()) return;
     // From the best one too: few matches of large parallax may be out of its reach.
     const Model best = result_.best;
+    // Finalists that may end no better than the best. More of them take time, fewer could miss a
+    // later one that does.
     constexpr int kMaxWorse = 2;
     int num_worse = 0;
     for (int k = capacity_ > 0 ? -1 : 0; k < finalists_.size && result_.found; ++k) {

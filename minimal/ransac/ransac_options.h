@@ -9,7 +9,10 @@
 
 namespace rigel {
 
+// Hypotheses: the room that is kept for them. Each takes the time of a local optimization.
 inline constexpr int kMaxFinalists = 16;
+// Draws in place of one sample. Matches may be so few or so close together that none is spread; the
+// loop has to end then, too.
 inline constexpr int kMaxRedraws = 10;
 
 enum class ScoreKind {

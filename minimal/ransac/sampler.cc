@@ -3,6 +3,7 @@
 namespace rigel {
 namespace {
 
+// Matches of a sample: fixed room, no heap. The largest sample of the catalogue has 17.
 constexpr int kMaxSample = 64;
 
 // Draws distinct indices without a retry: the r-th free index is r plus the number of taken ones at

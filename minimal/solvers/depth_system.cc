@@ -208,6 +208,8 @@ void DepthSystem<kModel>::NullVector(double z, double v[3]) const {
     cross[r][1] = a[2] * b[0] - a[0] * b[2];
     cross[r][2] = a[0] * b[1] - a[1] * b[0];
   }
+  // Squared share of the null vector: with a component below a hundredth two digits are lost, and
+  // the next component is tried.
   constexpr double kSmall2 = 1e-4;
   for (int k = 0; k < 3; ++k) {
     for (int c = 0; c < 3; ++c) {

@@ -13,6 +13,7 @@
 namespace rigel {
 namespace {
 
+// Matches: each is one linear equation for the 18 entries of two matrices, known but for a factor.
 constexpr int kSampleSize = 17;
 // Below this fraction of the largest, a pivot is zero by the structure of the rig or the motion.
 constexpr double kNegligible = 1e-10;

@@ -138,22 +138,27 @@ int RealRotations(const Equations& equations, const int* leading, int num_degree
 int RealRotations(const Equations& equations, const double* centre, Eigen::Vector3d* r) {
   switch (equations.num_quartics) {
     case 0: {
+      // Degrees 7 and 6: 64 monomials are left.
       constexpr int kLeading[] = {35, 21};
       return RealRotations<7, 60, 64>(equations, kLeading, 2, centre, r);
     }
     case 1: {
+      // Degrees 7 to 4: 56 monomials are left.
       constexpr int kLeading[] = {36, 24, 3, 1};
       return RealRotations<7, 68, 56>(equations, kLeading, 4, centre, r);
     }
     case 2: {  // 3 + 3
+      // Degrees 7 to 4: 48 monomials are left.
       constexpr int kLeading[] = {36, 28, 6, 2};
       return RealRotations<7, 76, 48>(equations, kLeading, 4, centre, r);
     }
     case 4: {  // 4 + 2, 4 + 1 + 1
+      // Degrees 7 to 4: 40 monomials are left.
       constexpr int kLeading[] = {36, 28, 11, 5};
       return RealRotations<7, 104, 40>(equations, kLeading, 4, centre, r);
     }
     case 10: {  // 5 + 1
+      // Degrees 5 and 4: 20 monomials are left.
       constexpr int kLeading[] = {21, 15};
       return RealRotations<5, 40, 20>(equations, kLeading, 2, centre, r);
     }

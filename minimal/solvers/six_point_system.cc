@@ -18,6 +18,8 @@ constexpr double kNegligible = 1e-10;
 constexpr double kNoMotion = 1e-6;
 // How far rounding moves the multiple root of a pure translation, radians.
 constexpr double kNoRotation = 1e-4;
+// Of the entries of R, and of t relative to 1 m and |t|: solutions that differ by less are one
+// root, found twice.
 constexpr double kDuplicate = 1e-9;
 
 // With partial pivoting; the loops of each column are of constant length.

@@ -67,6 +67,8 @@ void SolveSixBySix(double (*a)[8], double* x);
 // a result only: it starts at the null vector of M. True if it converged.
 template <class Evaluate, class Update>
 bool PolishSixPoint(const Evaluate& evaluate, const Update& update, Eigen::Vector4d* v) {
+  // Steps, and the largest one, of r in the solver's unit. Starts near a root keep within both;
+  // what does not has left the root that it was to find, or has none.
   constexpr int kMaxIterations = 10;
   constexpr double kMaxStep = 0.5;
   constexpr double kConverged = 1e-7;  // what is left is of the order of the step squared

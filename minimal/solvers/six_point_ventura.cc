@@ -193,6 +193,7 @@ int Solve6ptVentura(const PreparedMatches& matches, const int* sample, Solutions
   Row combined[6];
   std::copy(rows, rows + 6, combined);
   if (!CombineRows(combined) || !AddMinors(combined, &macaulay)) return 0;
+  // Degree 4: all of them; 20 monomials are left.
   constexpr int kLeading[] = {15};
   ActionMatrix<20> action;
   if (!macaulay.Reduce(kLeading, 1, &action)) return 0;

@@ -8,6 +8,7 @@
 
 namespace rigel {
 
+// Those of 6pt-stewenius, the most that a solver of the catalogue has.
 inline constexpr int kMaxSolutions = 64;
 
 struct Solution : Pose {
