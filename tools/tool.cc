@@ -85,6 +85,7 @@ std::vector<std::string>& FlagFiles() {
 // the stack ends where they name each other. Of one file all is read that a user may want; a
 // message if there is more to it. gflags opens it again, which a pipe does not bear.
 std::string FlagFileError(const std::string& path) {
+  // Bytes of one file: flags are lines that people write.
   constexpr size_t kMaxBytes = 1 << 20;
   const std::string flag = "--flagfile=" + PrintablePath(path) + ": ";
   std::error_code code;
@@ -327,6 +328,7 @@ bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
 }
 
 bool ReadInput(const std::string& path, std::string* text) {
+  // Bytes, as for any JSON (kMaxJsonBytes): a wrong file must not fill the memory.
   constexpr size_t kMaxBytes = size_t{1} << 30;
   InputBytes bytes;
   std::string error;

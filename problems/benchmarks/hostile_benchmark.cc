@@ -17,7 +17,9 @@
 namespace rigel {
 namespace {
 
+// Matches of a pair: a usual number, a large one, and so many that the time of one match shows.
 constexpr int kSizes[] = {200, 2000, 200000};
+// Matches, those of the last size: a pair takes long, and one is measured.
 constexpr int kHuge = 200000;
 
 std::vector<std::string> SolversOf(const HostileBenchmarkOptions& options) {
@@ -37,6 +39,7 @@ double ThreadMilliseconds() {
 }  // namespace
 
 FramePair MakeHostilePair(int num_matches, uint64_t seed) {
+  // Pixels. Any size would do, as the matches are at random places.
   constexpr int kWidth = 640, kHeight = 480;
   FramePair pair;
   pair.prior.gravity1 = pair.prior.gravity2 = Eigen::Vector3d::UnitY();

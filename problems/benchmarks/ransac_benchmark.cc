@@ -16,7 +16,10 @@
 namespace rigel {
 namespace {
 
+// Runs of a pair, of which the fastest counts: what disturbs a machine only adds.
 constexpr int kRepetitions = 3;
+// Cramer-Rao bounds of the pair's own rotation, 1 sigma each: noise alone seldom takes an error
+// beyond three.
 constexpr double kSuccessBounds = 3.0;
 // OpenGV takes seconds a pair.
 constexpr int kOpenGvPairs = 5;
@@ -108,6 +111,7 @@ std::optional<double> DirectionDeg(const Pose& truth, const MotionEstimate& esti
 
 // The motion counts as the static scene's if it holds nine in ten of what the true motion does.
 bool HoldsStaticMatches(const FramePair& clean, const Pose& pose, double threshold_px) {
+  // Of those that the true motion holds: noise takes some of the matches beyond the threshold.
   constexpr double kShare = 0.9;
   const GroupedMatches matches(clean.rig, clean.matches);
   const auto count = [&](const Pose& motion) {
@@ -328,6 +332,7 @@ std::vector<Task> MakeTasks(const RansacBenchmarkOptions& options) {
       break;
     case RansacExperiment::kOutliers:
       for (int percent = 10; percent <= 80; percent += 10) {
+        // Matches at every share, so that the rows differ in the outliers alone.
         constexpr int kInliers = 300;
         const int all = static_cast<int>(std::lround(kInliers * 100.0 / (100 - percent)));
         Task task = base;

@@ -25,7 +25,9 @@
 namespace rigel {
 namespace {
 
+// Pixels, 1 sigma of a coordinate: that of docs/refinement_tables.md.
 constexpr double kNoisePx = 0.5;
+// Runs of a problem, of which the fastest counts.
 constexpr int kRepetitions = 5;
 
 struct Problem {

@@ -193,7 +193,7 @@ SolverBenchmarkRow BenchmarkRow(const SolverInfo& solver, const SolverBenchmarkO
 }  // namespace
 
 double ReferenceKernelMicroseconds() {
-  constexpr int kProblems = 20000;  // some 25 batches
+  constexpr int kProblems = 20000;  // some 25 batches, for their median
   std::vector<Eigen::Matrix4d> matrices;
   Random random(7);
   for (int k = 0; k < kProblems; ++k) {

@@ -14,6 +14,8 @@
 namespace rigel {
 namespace {
 
+// Both hold for all three fits. Iterations, as the weights may go to and fro without an end; and
+// the step that ends them, far below what motions can tell.
 constexpr int kMaxIterations = 50;
 constexpr double kConverged = 1e-12;  // radians
 // Noise-free motions have residuals of rounding only.

@@ -33,6 +33,7 @@ const char* CalibrationLevelName(CalibrationLevel level);  // "none", "tilt", "f
 inline constexpr double kMaxCalibrationSigmaDeg = 1.0;
 // Answers farther from the start than this are not believed.
 inline constexpr double kMaxCalibrationTurnDeg = 30.0;
+// Motions. The residuals of fewer would say little about their own spread, and so about the sigmas.
 inline constexpr int kMinCalibrationPairs = 10;
 
 // An estimated motion and what of it is observable.

@@ -57,6 +57,7 @@ std::string Text(double value) {
 
 // "4pt-axis", "4pt-axis, sequence 06".
 std::string NameOf(const SolverSummary& entry) {
+  // Of a message's part: names in a report that somebody else wrote may be of any length.
   constexpr size_t kMaxBytes = 60;
   std::string name = entry.solver;
   if (entry.sequence != "all") name += ", sequence " + entry.sequence;

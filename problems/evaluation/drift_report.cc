@@ -123,6 +123,7 @@ std::string DriftTable(const EstimateReport& report) {
   if (remarks.empty()) return "";
   std::string text = table.Format();
   for (const auto& [remark, trajectories] : remarks) {
+    // Trajectories that a remark names; of more it tells the number, and stays a short line.
     constexpr size_t kListed = 5;
     for (size_t k = 0; k < std::min(kListed, trajectories.size()); ++k) {
       text += (k > 0 ? ", " : "") + std::to_string(trajectories[k]);

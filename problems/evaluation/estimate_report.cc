@@ -24,6 +24,7 @@ std::string ShortName(const std::string& name) {
   const size_t slash = name.find_last_of('/');
   std::string text = slash == std::string::npos ? name : name.substr(slash + 1);
   if (IsMatchFileName(text)) text.resize(text.rfind(".matches"));
+  // Characters, so that the table's lines stay within 100.
   constexpr size_t kWidth = 16;
   return Shortened(PrintablePath(text), kWidth);
 }
@@ -43,6 +44,7 @@ Json MotionJson(const Pose& pose) {
 
 // Three digits, of small ones in powers of ten.
 std::string ResidualText(double px) {
+  // Pixels: what is less would be 0.000.
   constexpr double kLeast = 5e-4;
   if (!(px > 0.0) || px >= kLeast) return FormatFitted(px, 3, 5);
   char text[32];

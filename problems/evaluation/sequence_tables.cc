@@ -11,9 +11,11 @@
 namespace rigel {
 namespace {
 
+// Characters of a line: tables of all tools keep to them.
 constexpr size_t kMaxWidth = 100;
+// Characters of a figure: FormatFitted() leaves out decimals to keep to them.
 constexpr size_t kFigureWidth = 6;
-constexpr size_t kMaxName = 12;  // of a sequence
+constexpr size_t kMaxName = 12;  // characters of a sequence's name, shortened to them
 
 using Figure = std::optional<double>;
 

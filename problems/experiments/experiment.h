@@ -66,6 +66,8 @@ struct ExperimentOptions {
   int every = 0;      // of the motions of a drive take each n-th; 0: kQuickEvery or kEvery
 };
 
+// Pairs of a point and, of a drive, each n-th motion: more take time and scatter less.
+// docs/experiments.md has the times of both sets.
 inline constexpr int kQuickPairs = 30;
 inline constexpr int kFullPairs = 500;
 inline constexpr int kQuickEvery = 100;

@@ -24,6 +24,7 @@ using Quantity = std::function<std::optional<Statistics>(const SolverSummary&)>;
 
 // "4pt-axis-approx-polished" as "4pt-axis", "approx", "polished": heads of narrow columns.
 std::vector<std::string> Broken(const std::string& name) {
+  // Characters of a line: as many as "4pt-axis" has, little more than a figure.
   constexpr size_t kWidth = 8;
   std::vector<std::string> parts;
   size_t begin = 0;

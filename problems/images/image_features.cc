@@ -22,8 +22,9 @@
 namespace rigel {
 namespace {
 
+// Of an image. The time of matching grows with their square.
 constexpr int kMaxFeatures = 20000;
-constexpr float kOrbScale = 1.2f;  // between two levels of the pyramid
+constexpr float kOrbScale = 1.2f;  // between two levels of the pyramid, as OpenCV has it
 
 // Four digits say what a key point and a ratio are worth, and keep the files small.
 double Rounded(double value) { return std::round(value * 1e4) / 1e4; }
@@ -36,7 +37,8 @@ bool IsCutOffPng(const std::vector<char>& bytes) {
   return text.substr(0, kBegin.size()) == kBegin && text.rfind(kEnd) == std::string_view::npos;
 }
 
-// The larger an image, the more its bytes can announce: told before anything is decoded.
+// The larger an image, the more its bytes can announce: told before anything is decoded. Pixels of
+// an image and bytes of a file; both are far more than any camera's, and bound the memory.
 constexpr int64_t kMaxPixels = 200000000;
 constexpr size_t kMaxImageBytes = size_t{1} << 30;
 
@@ -115,6 +117,7 @@ bool ReadImage(const std::string& path, cv::Mat* image, std::string* error) {
 // Where a key point really is. SIFT of OpenCV starts from the image at twice its size, whose pixel
 // x lies at x/2 - 1/4; it reports x/2.
 cv::Point2d SiftPixel(const cv::KeyPoint& point) {
+  // Pixels: the quarter of the formula above.
   constexpr double kShift = 0.25;
   return {point.pt.x - kShift, point.pt.y - kShift};
 }
@@ -137,8 +140,10 @@ void Undistort(const ImageCamera& camera, std::vector<cv::Point2d>* points,
                std::vector<bool>* valid) {
   valid->assign(points->size(), true);
   if (!camera.distortion || points->empty()) return;
+  // Of OpenCV's fixed-point iteration, which is slow where the lens distorts much; kMaxError
+  // finds the points that need more.
   constexpr int kMaxIterations = 50;
-  constexpr double kEpsilon = 1e-6;   // px
+  constexpr double kEpsilon = 1e-6;   // px, where it ends: far below the noise
   constexpr double kMaxError = 1e-2;  // px, of a point that was distorted again
   const PinholeCamera& c = camera.camera.intrinsics;
   const RadialTangential& d = *camera.distortion;

@@ -95,7 +95,7 @@ bool Gunzip(std::string_view compressed, size_t max_bytes, InputBytes* bytes, st
 
 std::string Gzip(std::string_view text) {
   z_stream stream{};
-  constexpr int kMemoryLevel = 8;  // zlib's default
+  constexpr int kMemoryLevel = 8;  // memory against speed: zlib's own default
   if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzipWindow, kMemoryLevel,
                    Z_DEFAULT_STRATEGY) != Z_OK) {
     return "";

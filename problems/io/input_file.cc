@@ -21,6 +21,7 @@ std::string SystemMessage(int error_number) {
 }
 
 std::string BytesText(size_t bytes) {
+  // Bytes: limits are told in GiB.
   constexpr size_t kGibi = size_t{1} << 30;
   return bytes % kGibi == 0 ? std::to_string(bytes / kGibi) + " GiB"
                             : std::to_string(bytes) + " bytes";

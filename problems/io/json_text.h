@@ -9,9 +9,9 @@
 
 namespace rigel {
 
-// What a report may be. Reports nest 6 deep; what the JSON library does recursively, it does to
-// this depth at most.
+// Bytes that a report may have: a bound on the memory that a wrong file takes.
 inline constexpr size_t kMaxJsonBytes = size_t{1} << 30;
+// Reports nest 6 deep; what the JSON library does recursively, it does to this depth at most.
 inline constexpr int kMaxJsonDepth = 64;
 
 // Throws std::exception with a message for people if the text is not JSON or beyond the bounds.

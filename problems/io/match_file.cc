@@ -28,6 +28,7 @@ using namespace match_file;
 constexpr double kMaxNormError = 1e-3;
 
 constexpr std::string_view kRowUsage = "I U V J U2 V2 SCORE";
+// Words of a row: those of kRowUsage.
 constexpr size_t kRowColumns = 7;
 // "0 0 0 0 0 0 0\n": bounds what `matches N` can truthfully announce.
 constexpr size_t kMinRowBytes = 14;

@@ -35,6 +35,7 @@ struct Keyword {
   size_t columns;
 };
 
+// Words of the longest line, that of a camera.
 inline constexpr size_t kMaxColumns = 16;
 inline constexpr std::array<Keyword, kNumKeywords> kKeywords = {{
     {"format", "format rigmatch 1", 3},

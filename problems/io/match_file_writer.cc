@@ -88,6 +88,7 @@ class Formatter {
 }  // namespace
 
 std::string FormatMatches(const FramePair& pair) {
+  // Bytes to reserve, both of them: a file that has more grows as it is written.
   constexpr size_t kHeaderBytes = 4096;
   constexpr size_t kUsualRowBytes = 100;
   Formatter f(kHeaderBytes + kUsualRowBytes * pair.matches.size());

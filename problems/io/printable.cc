@@ -84,6 +84,7 @@ std::string Printable(std::string_view text) {
 std::string PrintablePath(const std::string& path) { return Printable(path); }
 
 std::string Quoted(std::string_view word) {
+  // Bytes: enough to know it again, and the message stays a line.
   constexpr size_t kMaxLength = 30;
   if (word.size() <= kMaxLength) return "'" + Printable(word) + "'";
   // Not within a character.

@@ -19,6 +19,8 @@ RunLock::~RunLock() {
 }
 
 bool RunLock::Take(const std::string& path, std::string* error) {
+  // Each try that fails has met another run just as it removed the file. That is rare, and the loop
+  // has to end.
   constexpr int kMaxTries = 100;
   for (int k = 0; k < kMaxTries; ++k) {
     const int descriptor =

@@ -39,6 +39,7 @@ bool CannotBeWritten(const std::string& name, const std::string& why, std::strin
 }
 
 std::string TemporaryPath(const std::string& path, int k) {
+  // Bytes: 255 are the longest name of a file; the mark and a digit follow.
   constexpr size_t kMaxName = 255 - kMark.size() - 1;
   const fs::path file(path);
   std::string name = file.filename().string();

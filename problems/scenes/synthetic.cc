@@ -140,6 +140,7 @@ bool DrawCarMatch(const Car& car, const Rig& rig, const Pose& truth, Random* ran
 // Moves the given matches to a car. False if none was found that all their cameras see.
 bool MoveToCar(const SceneOptions& options, const FramePair& pair, const int* chosen, int size,
                Random* random, std::vector<Match>* matches) {
+  // Draws before giving up: a car that all these cameras see may be rare, or impossible.
   constexpr int kMaxCars = 100;
   for (int attempt = 0; attempt < kMaxCars; ++attempt) {
     const Car car = DrawCar(*pair.prior.gravity1, random);

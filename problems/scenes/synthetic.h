@@ -33,6 +33,8 @@ enum class RotationAxisPattern { kY, kRandom };
 bool ParseMotionPattern(std::string_view name, MotionPattern* pattern);
 bool ParseRotationAxisPattern(std::string_view name, RotationAxisPattern* pattern);
 
+// Cameras, then 22.5 degrees apart: each of 77 degrees shares most of its view with its
+// neighbours', and more would add little.
 inline constexpr int kMaxRing = 16;
 // Cameras of 77 degrees: neighbours of a ring of fewer see nothing in common.
 inline constexpr int kMinRingOfNeighbours = 5;

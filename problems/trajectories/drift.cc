@@ -5,6 +5,7 @@
 namespace rigel {
 namespace {
 
+// As in KITTI's metric: segments of 1 to 8 units, there of 100 m.
 constexpr int kLengths = 8;
 
 // Distance along the path up to each pose.

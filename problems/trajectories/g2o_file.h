@@ -18,7 +18,8 @@
 
 namespace rigel {
 
-inline constexpr double kLengthWithoutScale = 1.0;  // metres
+// Metres. Any length would do, as the edge has no information on it.
+inline constexpr double kLengthWithoutScale = 1.0;
 
 // Chains the motions: pair k leads from one pose to the next, where pair k + 1 starts. `pairs` and
 // `estimates` go together; `positions` has the place of each pair in the drive, increasing, or is
