@@ -179,7 +179,7 @@ void ReportDoubts(const EstimateReport& report) {
   std::vector<DoubtedMotion> motions;
   for (size_t k = 0; k < report.estimates.size(); ++k) {
     const MotionEstimate& e = report.estimates[k];
-    if (e.HasMotion()) motions.push_back({report.pairs[k].name, e.doubtful ? e.doubt : ""});
+    if (e.HasMotion()) motions.push_back({report.pairs[k].name, e.doubt});
   }
   ReportDoubts(FLAGS_solver, motions);
 }

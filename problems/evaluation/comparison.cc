@@ -75,7 +75,7 @@ PairResult ComparePair(const FramePair& pair, const EstimateOptions& options,
   result.message = estimate.message;
   result.inlier_ratio = estimate.inlier_ratio;
   result.iterations = estimate.iterations;
-  if (estimate.doubtful) result.doubt = estimate.doubt;
+  result.doubt = estimate.doubt;
   result.ransac_ms = estimate.ransac_ms;
   result.refine_ms = estimate.refine_ms;
   result.failed = estimate.status != EstimateStatus::kSuccess;
