@@ -127,11 +127,13 @@ TEST(RigDoubts, OneWayStereoIsNotCalledStandingStill) {
 // The rig is right, the prior is not.
 TEST(RigDoubts, AWrongPriorIsNotBlamedOnTheRig) {
   int doubtful = 0;
-  for (int index = 0; index < 10; ++index) {
+  for (int index = 0; index < 25; ++index) {
     SceneOptions scene;
     scene.ring = true;
     scene.num_cameras = 8;
-    scene.num_matches = 400;
+    scene.num_matches = 200;
+    scene.outlier_share = 0.3;
+    scene.motion = MotionPattern::kRandom;
     scene.rotation_deg = 20.0;
     scene.rotation_axis = RotationAxisPattern::kRandom;
     FramePair pair = ScenePair(scene, index);
