@@ -9,7 +9,7 @@ bool RansacOptions::IsValid(std::string* error) const {
     *error = "threshold_px must be positive and finite, or 0 for auto";
     return false;
   }
-  // Beyond these its square is nothing to compute with.
+  // Beyond these its square loses precision or overflows.
   if (threshold_px != kAutoThresholdPx &&
       (threshold_px < kMinThresholdPx || threshold_px > kMaxThresholdPx)) {
     *error = "threshold_px must lie in 1e-12 to 1e12";
