@@ -34,7 +34,7 @@ MotionEstimate Refused(EstimateStatus status, const std::string& message) {
   return estimate;
 }
 
-// Ackermann motion has a front: that of the rig where the prior states none.
+// The prior, with the rig's forward direction if it states none. Ackermann motion needs it.
 MotionPrior WithForward(const FramePair& pair) {
   MotionPrior prior = pair.prior;
   BodyAxes axes;
@@ -73,7 +73,7 @@ bool EstimateOptions::IsValid(std::string* error) const {
     return false;
   }
   RefineOptions refined = refine;
-  // "auto" may find a prior of any kind.
+  // With "auto" the prior's kind is not known yet; any kind is valid here.
   refined.prior_kind = solver == kAutoSolver ? PriorKind::kVertical : FindSolver(solver)->prior;
   return ransac.IsValid(error) && (!refine_motion || refined.IsValid(error)) &&
          IsValidTimeLimit(time_limit, error);
@@ -116,14 +116,14 @@ MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pai
   }
 
   const auto ransac_start = std::chrono::steady_clock::now();
-  // Of the motion of the rig's centre; the body's is made of it in the end. The Ackermann model is
-  // of the body's origin.
+  // The search is for the motion of the rig's centre; the body's motion is computed from it at the
+  // end. The Ackermann model describes the motion of the body's origin.
   const bool ackermann = solvers[0]->solve == &Solve2ptAckermann;
   const Eigen::Vector3d centre =
       ackermann ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : RigCentre(pair.rig);
   const GroupedMatches matches(WithOrigin(pair.rig, centre), pair.matches);
   MotionSearch search = SearchMotion(solvers, prior, matches, options.ransac, &stop);
-  // The loop knows how many of those that it scored.
+  // RANSAC counted the inliers among the matches that it scored; this counts them among all.
   if (search.best.found && matches.size() > options.ransac.max_scored) {
     matches.ScoreInFront(search.best.best, options.ransac.threshold_px,
                          std::numeric_limits<double>::infinity(), &search.best.num_inliers);
@@ -170,7 +170,7 @@ MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pai
       estimate.num_inliers = estimate.refine.num_inliers;
       if (estimate.refine.stopped != StopReason::kNone) {
         estimate.stopped = estimate.refine.stopped;
-        // Refine() knows of no more than what was left of the limit.
+        // Refine() was given only the rest of the limit; the message names the whole.
         if (stop.Asked()) estimate.refine.message = stop.Message();
         estimate.message = estimate.refine.message;
       }
