@@ -8,9 +8,9 @@
 namespace rigel {
 namespace {
 
-// So many matches tell a good hypothesis from a bad one loosely.
+// Matches for the loose score: enough to separate good and bad hypotheses roughly.
 constexpr size_t kSubset = 128;
-// The refinement takes all; until then these are enough.
+// Matches for local optimization: enough until the refinement, which takes all.
 constexpr size_t kOptimized = 300;
 
 }  // namespace
@@ -56,9 +56,10 @@ double FramePairSolver::Work(int num_solutions) const {
                           kMatch * scored_.size());
 }
 
-// The sum over the subset is too far above its expectation for a score of `best`. Terms are
-// between 0 and t^2: of all sets of so many with this mean those of zeros and t^2 alone scatter
-// most, hypergeometrically, and where few are t^2 with a longer tail than a normal one.
+// True if the sum over the subset is too far above its expectation for a total score of `best`. The
+// terms are between 0 and t^2. Among all sets of terms with this mean, those of only 0 and t^2
+// scatter most. Their sum is hypergeometric; if few terms are t^2, its tail is longer than a normal
+// one.
 bool FramePairSolver::BailsOut(const Model& model, double best) const {
   constexpr double kDeviations = 3.0;
   constexpr double kTerms = 2.0;
