@@ -21,13 +21,13 @@ struct Rows {
   double rho[kBlock];                // kCauchy: 1 + s / scale^2
 };
 
-// No loop has a rest of single matches.
+// Rounded up to whole vectors, so that no loop ends with single matches.
 RIGEL_KERNEL_BODY int WholeLanes(int size) {
   return (size + (kKernelPadding - 1)) & ~(kKernelPadding - 1);
 }
 
-// What the loss makes of s: its value (kCauchy: what the logarithm is taken of), rho', and
-// D = 1 + 2 s rho'' / rho', Newton's share of the curvature.
+// The loss at s: its value rho (for kCauchy the argument of the logarithm), rho', and
+// 1 + 2 s rho'' / rho', the factor of the curvature in Newton's method.
 RIGEL_KERNEL_BODY void Loss(LossKind kind, double c, double c2, double s, double* rho,
                             double* slope, double* newton) {
   switch (kind) {
@@ -68,7 +68,7 @@ RIGEL_KERNEL_BODY void Loss(LossKind kind, double c, double c2, double s, double
   }
 }
 
-// Returns the sum of rho over the block (kCauchy: of what is left of it, see below).
+// Fills `rows` for the block: rho, and with `derivatives` the rest.
 RIGEL_KERNEL_BODY void Linearize(LossKind kind, bool newton_curvature, bool derivatives, double c,
                                  const PixelArrays& p, const double* weights, int begin, int size,
                                  const double F[9], double rounding2, Rows* rows) {
@@ -132,7 +132,7 @@ struct Accumulated {
   Lanes H[kEntries][kEntries];  // the lower triangle
 };
 
-// Adds kRow + 1 entries of row kRow of H, and what that row has in the last column.
+// Adds the first kRow + 1 entries of row kRow of H, and its entry in the last column.
 template <int kRow>
 RIGEL_KERNEL_BODY void AddRow(const Rows& rows, int size, Accumulated* sums) {
   Lanes sum[kRow + 1];
@@ -173,7 +173,7 @@ RIGEL_KERNEL_BODY void AddRowsBody(const Rows& rows, int size, Accumulated* sums
   AddGradient(rows, size, sums);
 }
 
-// Functions of their own, in which the sums of a loop have the registers for themselves.
+// Separate functions, so that the sums of a loop stay in registers.
 using AddRowsFunction = void(const Rows& rows, int size, Accumulated* sums);
 __attribute__((noinline)) void AddRows(const Rows& rows, int size, Accumulated* sums) {
   AddRowsBody(rows, size, sums);
@@ -258,7 +258,7 @@ RIGEL_KERNEL_BODY void Dispatch(const SampsonKernelOptions& options, bool deriva
 #undef RIGEL_SUM
 }
 
-// Lower triangle of C, what is off the diagonal doubled.
+// Lower triangle of C, with the entries off the diagonal doubled.
 struct QuadraticForm {
   double q[kEntries][kEntries];
 };

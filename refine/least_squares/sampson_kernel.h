@@ -1,9 +1,9 @@
 // The inner loop of the refinement: normal equations of the Sampson errors of one camera pair by
 // the nine entries of its fundamental matrix.
 //
-// The residual of a match depends on the motion through F alone, so that the sums over the matches
-// need no derivative of the motion: H = sum (dr/dF)(dr/dF)' is turned into the normal equations of
-// any parameters by dF/d(parameters), once a camera pair.
+// The residual of a match depends on the motion only through F. So the sums over the matches need
+// no derivative by the motion. H = sum (dr/dF)(dr/dF)' is converted to the normal equations of any
+// parameters by dF/d(parameters), once for each camera pair.
 #ifndef RIGEL_REFINE_LEAST_SQUARES_SAMPSON_KERNEL_H_
 #define RIGEL_REFINE_LEAST_SQUARES_SAMPSON_KERNEL_H_
 
@@ -34,11 +34,11 @@ struct SampsonKernelOptions {
   Curvature curvature = Curvature::kReweighted;
 };
 
-// `F` is the row-major centred fundamental matrix, `weights` one number a match: matches with 0 are
-// left out. The pixels are read up to a multiple of kKernelPadding: any finite numbers. A match
-// whose squared gradient is not above rounding2 (|p1|^2 + |p2|^2) is at an epipole: its residual
-// and derivative are zero. Without a gradient (`derivatives` false) only the cost is set. The bits
-// do not depend on the path.
+// `F` is the row-major centred fundamental matrix. `weights` has one number for each match; 0
+// leaves it out. The pixels are read up to a multiple of kKernelPadding, where any finite numbers
+// may be. A match whose squared gradient is not above rounding2 (|p1|^2 + |p2|^2) is at an epipole:
+// its residual and derivative are zero. Without `derivatives` only the cost is set. The bits do not
+// depend on the path.
 void SumSampson(const SampsonKernelOptions& options, const PixelArrays& pixels,
                 const double* weights, const double F[9], double rounding2, bool derivatives,
                 SampsonSums* sums, CpuPath path = BestCpuPath());
@@ -52,8 +52,8 @@ struct FundamentalDerivatives {
 void AddProjected(const SampsonSums& sums, const FundamentalDerivatives& D, double* gradient,
                   double* curvature, CpuPath path = BestCpuPath());
 
-// w^2 (dr/dF) C (dr/dF)' of each match: the variance of its residual r that an error of F brings, C
-// (row-major) being the covariance of F's entries. F, weights, padding and rounding2 as above.
+// w^2 (dr/dF) C (dr/dF)' of each match: the variance of its residual r because of the error of F. C
+// (row-major) is the covariance of F's entries. F, weights, padding and rounding2 as above.
 void SampsonLeverages(const PixelArrays& pixels, const double* weights, const double F[9],
                       const double C[81], double rounding2, double* leverages,
                       CpuPath path = BestCpuPath());

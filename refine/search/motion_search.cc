@@ -111,7 +111,7 @@ class Search {
     return false;
   }
 
-  // To its end, or that of the budget.
+  // Runs solver k to its end, or to that of the budget.
   void Conclude(size_t k) {
     attempts_[k]->Advance(budget_, &budget_);
     attempts_[k]->Settle();
@@ -122,9 +122,9 @@ class Search {
                      options_.threshold_px);
   }
 
-  // A few iterations of each until the motion of one gives no cause for doubt, which then is
-  // concluded. False if there is none. Those that need no prior come right after the first of
-  // those that do: of several that a prior allows all are wrong where it is.
+  // Makes a few iterations of each solver until a motion is not doubtful, and runs its solver to
+  // the end. False if there is none. Solvers without a prior come right after the first one with a
+  // prior: if the prior is wrong, all solvers that use it fail.
   bool Probe() {
     std::vector<size_t> order, later;
     for (size_t k = 0; k < solvers_.size(); ++k) {
