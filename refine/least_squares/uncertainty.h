@@ -24,13 +24,13 @@ inline constexpr double kScaleObservableRatio = 0.05;
 inline constexpr double kDirectionObservableDeg = 10.0;
 // ... and a fifth of the intra-camera matches move by more than this many sigma of the image noise,
 // without the part that the rotation moves them. Without translation the matches still fit some
-// direction as well as their noise allows, and the covariance does not show this.
+// direction as well as their noise allows, and the covariance does not show this. If there are no
+// intra-camera matches, |t| has to exceed this many of its own standard deviations.
 inline constexpr double kParallaxSigmas = 5.0;
 // Least noise of a matcher that is assumed here, pixels (times PixelUnit()). A fit to the noise has
 // smaller residuals than the noise.
 inline constexpr double kMinMatchNoisePx = 0.1;
-// Without intra-camera matches |t| has to exceed kParallaxSigmas of its own standard deviations.
-// Rotation is observable if its largest standard deviation is at most this.
+// Rotation is observable if its standard deviation (RotationSigma) is at most this.
 inline constexpr double kRotationObservableDeg = 10.0;
 
 // J'J of the Sampson residuals (pixels) at `pose`, over all six parameters. Each residual is
