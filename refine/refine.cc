@@ -523,7 +523,7 @@ RefineSummary Refiner::Run(Pose* pose) {
   summary_.num_iterations = 0;
   Pose result = *pose;
   ResolveSign(sign_subset_, options_.threshold_px, &result);
-  // Not by the residual alone: matches that hardly determine |t| would not move it far enough.
+  // Before the fit: matches that hardly determine |t| would not move it far enough.
   if (UsesBodyLength(options_, prior_)) TakeDistance(&result);
   SelectInliers(result);
   SetNoise();
