@@ -27,8 +27,7 @@ struct EstimateOptions {
   RansacOptions ransac;  // of "auto", its max_iterations are those of all solvers together
   bool refine_motion = true;
   // ScaleMode::kFixed needs the prior's distance: the |t| that RANSAC finds may be arbitrary.
-  // The solver's prior replaces refine.prior_kind; refine.threshold_px is taken from ransac.
-  RefineOptions refine;
+  RefineSettings refine;
 
   // Seconds from the call on, >= 0: after them the result is the best motion found by then, see
   // MotionEstimate::stopped. What prepares the matches and a step in progress are not cut short.

@@ -63,12 +63,10 @@ struct RefineProgress {
   double cost = 0.0;  // 1/2 sum rho(r^2) by now
 };
 
-struct RefineOptions {
+// What a user sets, in Refine() and in EstimateMotion() alike.
+struct RefineSettings {
   RefineForm form = RefineForm::kFull;
   ResidualKind residual = ResidualKind::kSampson;
-  // Which part of the prior the forms kPrior and kPriorDepths take as exact, and which part
-  // use_prior weighs.
-  PriorKind prior_kind = PriorKind::kNone;
   // Adds the prior as residuals weighted by its sigma, with its distance if it has one; a part
   // without a sigma stays out.
   bool use_prior = false;
@@ -82,18 +80,12 @@ struct RefineOptions {
 
   RefineEngine engine = RefineEngine::kAuto;
 
-  // > 0; matches with a larger Sampson error are left out. Where the noise is given, nothing below
-  // kGateSigmas of it is. kAutoThresholdPx: as of RansacOptions.
-  double threshold_px = kAutoThresholdPx;
   int max_rounds = 5;           // >= 1; selections of inliers
   int max_num_iterations = 50;  // >= 0, a round
   ScaleMode scale = ScaleMode::kAuto;
   // 1-sigma image noise where it is known; else estimated: 1.4826 times the median |residual| of
   // the n inliers, times sqrt(n / (n - 6)); at least a third of the threshold below 16 inliers.
   std::optional<double> noise_px;
-  // >= 1; so many motions were tried before the start was found, which the number of matches that
-  // agree must make up for (RefineSummary::exceeds_chance).
-  double num_tries = 1e4;
 
   // Seconds from the call on, >= 0, and a flag that any thread may set: either ends the refinement
   // with Termination::kStopped after the iteration in progress.
@@ -101,6 +93,25 @@ struct RefineOptions {
   const std::atomic<bool>* cancel = nullptr;  // null, or outlives the call
   // Called after each iteration, where it is not empty, by the thread that called Refine().
   std::function<void(const RefineProgress&)> progress;
+
+  bool IsValid(std::string* error) const;
+};
+
+// All that Refine() takes. The search that found the start knows what is added here:
+// EstimateMotion() takes it from its solver and RANSAC.
+struct RefineOptions : RefineSettings {
+  RefineOptions() = default;
+  explicit RefineOptions(const RefineSettings& settings) : RefineSettings(settings) {}
+
+  // Which part of the prior the forms kPrior and kPriorDepths take as exact, and which part
+  // use_prior weighs.
+  PriorKind prior_kind = PriorKind::kNone;
+  // > 0; matches with a larger Sampson error are left out. Where the noise is given, nothing below
+  // kGateSigmas of it is. kAutoThresholdPx: as of RansacOptions.
+  double threshold_px = kAutoThresholdPx;
+  // >= 1; so many motions were tried before the start was found, which the number of matches that
+  // agree must make up for (RefineSummary::exceeds_chance).
+  double num_tries = 1e4;
 
   bool IsValid(std::string* error) const;
 };

@@ -1,6 +1,6 @@
 // RANSAC over a solver concept: it knows how to draw, solve and score, and nothing of geometry.
 //
-// MSAC, MAGSAC++ or inlier-count score, samples as the solver draws them (PROSAC: prosac.h), the
+// MSAC or inlier-count score, samples as the solver draws them (PROSAC: prosac.h), the
 // number of iterations adapts to the share of inliers, scoring stops early once a hypothesis can no
 // longer win or is too unlikely to, the best hypothesis of the first min_iterations and each better
 // one after them is locally optimized, and in the end the best ones of a looser score (finalists).

@@ -11,13 +11,9 @@ namespace rigel {
 
 // Hypotheses: the room that is kept for them. Each takes the time of a local optimization.
 inline constexpr int kMaxFinalists = 16;
-// Draws in place of one sample. Matches may be so few or so close together that none is spread; the
-// loop has to end then, too.
-inline constexpr int kMaxRedraws = 10;
 
 enum class ScoreKind {
-  kMsac,    // sum min(r^2, threshold^2), Torr and Zisserman 2000
-  kMagsac,  // MAGSAC++, Barath et al. 2020: the noise level marginalized up to the threshold
+  kMsac,  // sum min(r^2, threshold^2), Torr and Zisserman 2000
   // Number of matches that are no inliers, as of Fischler and Bolles 1981: of hypotheses with as
   // many inliers the first wins. For comparisons with published figures; it never stops early.
   kInlierCount,
@@ -40,10 +36,6 @@ struct RansacOptions {
   // 2005): of those that would, at most one in a thousand is lost. For scores that are sums.
   bool bail_out = true;
   ScoreKind score = ScoreKind::kMsac;
-  // Draws again where two matches of a sample lie within min_sample_distance_px of one another:
-  // such samples say little. At most kMaxRedraws times.
-  bool spread_samples = false;
-  double min_sample_distance_px = 30.0;  // >= 0
   // After the loop, so many hypotheses are locally optimized that do best at a loose threshold and
   // differ from one another and from the best: where the prior is off, no minimal hypothesis fits
   // well at the threshold, and the one that fits best may be far from the truth. 0 to
