@@ -27,8 +27,7 @@ struct EstimateOptions {
   RansacOptions ransac;  // with "auto", all solvers share its max_iterations
   bool refine_motion = true;
   // ScaleMode::kFixed needs the prior's distance: the |t| that RANSAC finds may be arbitrary.
-  // The solver's prior replaces refine.prior_kind; refine.threshold_px is taken from ransac.
-  RefineOptions refine;
+  RefineSettings refine;
 
   // Seconds from the call on, >= 0. After them the call returns the best motion found by then; see
   // MotionEstimate::stopped. It does not interrupt the preparation of the matches or a step in

@@ -578,20 +578,11 @@ RefineSummary Refiner::Run(Pose* pose) {
 
 }  // namespace
 
-bool RefineOptions::IsValid(std::string* error) const {
-  const bool prior_exact = form == RefineForm::kPrior || form == RefineForm::kPriorDepths;
+bool RefineSettings::IsValid(std::string* error) const {
   if (std::string(RefineFormName(form)) == "unknown" ||
       std::string(ResidualName(residual)) == "unknown" ||
       std::string(LossName(loss)) == "unknown") {
     *error = "form, residual or loss is none of its enumeration";
-    return false;
-  }
-  if (prior_exact && prior_kind == PriorKind::kNone) {
-    *error = std::string("the form '") + RefineFormName(form) + "' needs a prior_kind";
-    return false;
-  }
-  if (!(threshold_px >= 0) || !std::isfinite(threshold_px)) {
-    *error = "threshold_px must be positive and finite, or 0 for auto";
     return false;
   }
   if (!(loss_scale_sigmas > 0) || !std::isfinite(loss_scale_sigmas)) {
@@ -606,11 +597,25 @@ bool RefineOptions::IsValid(std::string* error) const {
     *error = "noise_px must be positive and finite";
     return false;
   }
+  return IsValidTimeLimit(time_limit, error);
+}
+
+bool RefineOptions::IsValid(std::string* error) const {
+  if (!RefineSettings::IsValid(error)) return false;
+  const bool prior_exact = form == RefineForm::kPrior || form == RefineForm::kPriorDepths;
+  if (prior_exact && prior_kind == PriorKind::kNone) {
+    *error = std::string("the form '") + RefineFormName(form) + "' needs a prior_kind";
+    return false;
+  }
+  if (!(threshold_px >= 0) || !std::isfinite(threshold_px)) {
+    *error = "threshold_px must be positive and finite, or 0 for auto";
+    return false;
+  }
   if (!(num_tries >= 1.0) || !std::isfinite(num_tries)) {
     *error = "num_tries must be at least 1 and finite";
     return false;
   }
-  return IsValidTimeLimit(time_limit, error);
+  return true;
 }
 
 Eigen::Vector3d FittedPoint(const RefineOptions& options, const MotionPrior& prior,

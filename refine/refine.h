@@ -66,12 +66,10 @@ struct RefineProgress {
   double cost = 0.0;  // 1/2 sum rho(r^2)
 };
 
-struct RefineOptions {
+// The options that a user sets for Refine() and for EstimateMotion().
+struct RefineSettings {
   RefineForm form = RefineForm::kFull;
   ResidualKind residual = ResidualKind::kSampson;
-  // Which part of the prior the forms kPrior and kPriorDepths take as exact, and which part
-  // use_prior weighs.
-  PriorKind prior_kind = PriorKind::kNone;
   // Adds the prior as residuals, and its distance if it has one, each divided by its sigma. A part
   // without a sigma is left out.
   bool use_prior = false;
@@ -86,9 +84,6 @@ struct RefineOptions {
 
   RefineEngine engine = RefineEngine::kAuto;
 
-  // > 0; matches with a larger Sampson error are left out. Where the noise is given, nothing below
-  // kGateSigmas of it is. kAutoThresholdPx: as of RansacOptions.
-  double threshold_px = kAutoThresholdPx;
   int max_rounds = 5;           // >= 1; selections of inliers
   int max_num_iterations = 50;  // >= 0, in each round
   ScaleMode scale = ScaleMode::kAuto;
@@ -96,9 +91,6 @@ struct RefineOptions {
   // times the median |residual|, times sqrt(n / (n - 6)). Below 16 inliers it is at least a third
   // of the threshold.
   std::optional<double> noise_px;
-  // >= 1; so many motions were tried before the start was found, which the number of matches that
-  // agree must make up for (RefineSummary::exceeds_chance).
-  double num_tries = 1e4;
 
   // Seconds from the call on, >= 0, and a flag that any thread may set: either ends the refinement
   // with Termination::kStopped after the iteration in progress.
@@ -108,6 +100,24 @@ struct RefineOptions {
   std::function<void(const RefineProgress&)> progress;
 
   // False with a message in `error` (not null) if a member is out of its range.
+  bool IsValid(std::string* error) const;
+};
+
+// All options of Refine(). The members added here depend on the search that found the start:
+// EstimateMotion() sets them from its solver and RANSAC.
+struct RefineOptions : RefineSettings {
+  RefineOptions() = default;
+  explicit RefineOptions(const RefineSettings& settings) : RefineSettings(settings) {}
+
+  // The part of the prior that kPrior and kPriorDepths take as exact and that use_prior weights.
+  PriorKind prior_kind = PriorKind::kNone;
+  // Pixels, > 0; matches with a larger Sampson error are left out. If the noise is given, the limit
+  // is at least kGateSigmas of it. kAutoThresholdPx: as in RansacOptions.
+  double threshold_px = kAutoThresholdPx;
+  // Number of motions that were tried before the start was found, >= 1. The more were tried, the
+  // more matches must agree (RefineSummary::exceeds_chance).
+  double num_tries = 1e4;
+
   bool IsValid(std::string* error) const;
 };
 

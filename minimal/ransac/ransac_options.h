@@ -11,13 +11,9 @@ namespace rigel {
 
 // Capacity, hypotheses. Each takes the time of a local optimization, so more are of no use.
 inline constexpr int kMaxFinalists = 16;
-// Draws in place of one sample. Matches may be so few or so close together that none is spread; the
-// loop has to end then, too.
-inline constexpr int kMaxRedraws = 10;
 
 enum class ScoreKind {
-  kMsac,    // sum min(r^2, threshold^2), Torr and Zisserman 2000
-  kMagsac,  // MAGSAC++, Barath et al. 2020: the noise level marginalized up to the threshold
+  kMsac,  // sum min(r^2, threshold^2), Torr and Zisserman 2000
   // Number of outliers, Fischler and Bolles 1981. Among hypotheses with the same number the first
   // wins. For comparisons with published figures; scoring never stops early.
   kInlierCount,
@@ -41,10 +37,6 @@ struct RansacOptions {
   // Capel 2005). It loses at most one winner in a thousand. Not for kInlierCount.
   bool bail_out = true;
   ScoreKind score = ScoreKind::kMsac;
-  // Draws again where two matches of a sample lie within min_sample_distance_px of one another:
-  // such samples say little. At most kMaxRedraws times.
-  bool spread_samples = false;
-  double min_sample_distance_px = 30.0;  // >= 0
   // Number of hypotheses that are locally optimized after the loop: those that score best at a
   // loose threshold and differ from one another and from the best. They help if the prior has an
   // error. Then no minimal hypothesis fits well at the threshold, and the one that fits best may be

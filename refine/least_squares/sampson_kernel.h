@@ -15,23 +15,17 @@ namespace rigel {
 
 // For e = w r, the Sampson error in pixels times the weight of the match, and s = e^2.
 struct SampsonSums {
-  double cost;   // 1/2 sum rho(s)
-  double g[9];   // sum rho'(s) e de/dF, F row by row
-  double H[81];  // sum h(s) (de/dF)(de/dF)', full and symmetric; see SumSampson()
-};
-
-// What the second derivative of the loss does to H.
-enum class Curvature {
-  kReweighted,  // h = rho': every step lowers the cost of the reweighted least squares
-  // h = rho' + 2 s rho'' (Newton's) where that is above rho'/3, else rho': near the minimum a step
-  // leaves next to nothing, and outliers do not make it too long.
-  kNewton,
+  double cost;  // 1/2 sum rho(s)
+  double g[9];  // sum rho'(s) e de/dF, F row by row
+  // sum h(s) (de/dF)(de/dF)', full and symmetric. h = rho' + 2 s rho'' (Newton's) where that is
+  // above rho'/3, else rho': near the minimum a step leaves next to nothing, and outliers do not
+  // make it too long.
+  double H[81];
 };
 
 struct SampsonKernelOptions {
   LossKind loss = LossKind::kNone;
   double loss_scale = 1.0;  // pixels, > 0
-  Curvature curvature = Curvature::kReweighted;
 };
 
 // `F` is the row-major centred fundamental matrix. `weights` has one number for each match; 0

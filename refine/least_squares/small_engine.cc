@@ -29,7 +29,6 @@ class ParameterEquations {
         prior_unit_(prior_unit) {
     kernel_.loss = options.loss;
     kernel_.loss_scale = options.loss_scale;
-    kernel_.curvature = Curvature::kNewton;
   }
 
   // Without `derivatives` only the cost is set.

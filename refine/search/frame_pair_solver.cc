@@ -33,20 +33,9 @@ FramePairSolver::FramePairSolver(const SolverInfo& solver, const GroupedMatches&
       loose_engine_(subset_),
       engine_(optimized_),
       threshold_px_(options.threshold_px) {
-  if (options.score == ScoreKind::kMagsac) {
-    loss_ = MagsacTable(options.threshold_px * options.threshold_px);
-  }
   for (const MatchGroup& group : matches.groups()) {
     if (group.camera1 != group.camera2) intra_only_ = false;
   }
-}
-
-bool FramePairSolver::Draw(Random* random, int* sample) const {
-  for (int k = 0; k < kMaxRedraws; ++k) {
-    const bool drawn = sampler_.Draw(random, sample);
-    if (!drawn || !options_.spread_samples || IsSpread(sample)) return drawn;
-  }
-  return true;
 }
 
 double FramePairSolver::Work(int num_solutions) const {
@@ -69,7 +58,7 @@ bool FramePairSolver::BailsOut(const Model& model, double best) const {
   const double p = std::min(best / (n * t2), 1.0);
   const double sigma = std::sqrt(m * p * (1.0 - p) * (1.0 - m / n));
   const double limit = t2 * (m * p + kDeviations * sigma + kTerms);
-  return drawn_subset_.Score(model, threshold_px_, limit, nullptr, Loss()) > limit;
+  return drawn_subset_.Score(model, threshold_px_, limit, nullptr) > limit;
 }
 
 bool FramePairSolver::Admit(Model* model) const {
@@ -96,22 +85,6 @@ bool FramePairSolver::LocalOptimize(Model* model) const {
     return false;
   }
   *model = optimized;
-  return true;
-}
-
-// No two matches of a camera pair near one another in the first image.
-bool FramePairSolver::IsSpread(const int* sample) const {
-  const double limit2 = options_.min_sample_distance_px * options_.min_sample_distance_px;
-  for (int i = 0; i < solver_.sample_size; ++i) {
-    const Match& a = matches_.matches()[sample[i]];
-    for (int j = 0; j < i; ++j) {
-      const Match& b = matches_.matches()[sample[j]];
-      if (a.camera1 == b.camera1 && a.camera2 == b.camera2 &&
-          (a.pixel1 - b.pixel1).squaredNorm() < limit2) {
-        return false;
-      }
-    }
-  }
   return true;
 }
 

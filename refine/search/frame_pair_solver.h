@@ -2,13 +2,11 @@
 #ifndef RIGEL_REFINE_SEARCH_FRAME_PAIR_SOLVER_H_
 #define RIGEL_REFINE_SEARCH_FRAME_PAIR_SOLVER_H_
 
-#include <optional>
 #include <vector>
 
 #include "rigel/core/alignment.h"
 #include "rigel/core/grouped_matches.h"
 #include "rigel/core/random.h"
-#include "rigel/core/score_kernel.h"
 #include "rigel/minimal/catalogue.h"
 #include "rigel/minimal/ransac/prosac.h"
 #include "rigel/minimal/ransac/ransac.h"
@@ -34,7 +32,7 @@ class FramePairSolver {
 
   int num_data() const { return scored_.size(); }
   int sample_size() const { return solver_.sample_size; }
-  bool Draw(Random* random, int* sample) const;
+  bool Draw(Random* random, int* sample) const { return sampler_.Draw(random, sample); }
   int MinimalSolver(const int* sample, Solutions* solutions) const {
     prepared_.Prepare(sample, solver_.sample_size);
     return solver_.solve(prepared_, sample, solutions);
@@ -42,11 +40,11 @@ class FramePairSolver {
   double Work(int num_solutions) const;
   // Without the depths, which only add to the score. It hardly depends on the sign of t.
   double QuickScore(const Model& model, double bound) const {
-    return scored_.Score(model, threshold_px_, bound, nullptr, Loss());
+    return scored_.Score(model, threshold_px_, bound, nullptr);
   }
   bool BailsOut(const Model& model, double best) const;
   double Score(const Model& model, double bound, int* inliers) const {
-    return scored_.ScoreInFront(model, threshold_px_, bound, inliers, Loss());
+    return scored_.ScoreInFront(model, threshold_px_, bound, inliers);
   }
   bool Admit(Model* model) const;
   bool Similar(const Model& a, const Model& b) const;
@@ -61,8 +59,6 @@ class FramePairSolver {
   // Times the threshold. A prior with an error of half a degree moves points by a few pixels.
   static constexpr double kLooseFactor = 4.0;
 
-  const LossTable* Loss() const { return loss_.has_value() ? &*loss_ : nullptr; }
-  bool IsSpread(const int* sample) const;
   // True if |t| of a minimal solution is mostly noise.
   bool ScaleIsNoise(const Model& model) const { return intra_only_ || !model.has_scale; }
   void ResolveSignAndMaybeScale(double threshold, Model* model) const;
@@ -79,7 +75,6 @@ class FramePairSolver {
   mutable PreparedMatches prepared_;
   mutable ProsacSampler sampler_;
   const RansacOptions& options_;
-  std::optional<LossTable> loss_;
   GroupedMatches optimized_;
   mutable SmallEngine loose_engine_;
   mutable SmallEngine engine_;
