@@ -10,6 +10,7 @@
 #include "rigel/core/metrics.h"
 #include "rigel/minimal/catalogue.h"
 #include "rigel/problems/benchmarks/opengv_peers.h"
+#include "rigel/problems/benchmarks/ransac_tasks.h"
 #include "rigel/problems/evaluation/cramer_rao.h"
 #include "rigel/problems/scenes/synthetic.h"
 
@@ -28,14 +29,6 @@ constexpr int kOpenGvPairs = 5;
 struct Problem {
   FramePair pair;
   std::optional<FramePair> clean;
-};
-
-// What one row measures.
-struct Task {
-  SceneOptions scene;
-  EstimateOptions estimate;
-  std::string variant;
-  std::string opengv;  // estimates in place of Rigel if not empty
 };
 
 // An outlier, or a match of the car, is what another scene without them has elsewhere.
@@ -68,7 +61,7 @@ std::vector<Problem> MakeProblems(const SceneOptions& scene, int pairs) {
 }
 
 // The noise that the pair states is the refinement's.
-MotionEstimate EstimateOnce(const Task& task, const FramePair& pair) {
+MotionEstimate EstimateOnce(const RansacTask& task, const FramePair& pair) {
   if (task.opengv.empty()) {
     EstimateOptions options = task.estimate;
     if (pair.noise_px.has_value()) options.refine.noise_px = pair.noise_px;
@@ -90,7 +83,7 @@ MotionEstimate EstimateOnce(const Task& task, const FramePair& pair) {
 double TotalMs(const MotionEstimate& estimate) { return estimate.ransac_ms + estimate.refine_ms; }
 
 // The least of a few repetitions: what disturbs a machine only adds.
-MotionEstimate EstimateTimed(const Task& task, const FramePair& pair) {
+MotionEstimate EstimateTimed(const RansacTask& task, const FramePair& pair) {
   MotionEstimate best = EstimateOnce(task, pair);
   for (int k = 1; k < kRepetitions && task.opengv.empty(); ++k) {
     MotionEstimate again = EstimateOnce(task, pair);
@@ -123,7 +116,7 @@ bool HoldsStaticMatches(const FramePair& clean, const Pose& pose, double thresho
   return static_cast<double>(count(pose)) >= kShare * static_cast<double>(count(*clean.truth));
 }
 
-RefineOptions RefinementOf(const Task& task, const FramePair& pair) {
+RefineOptions RefinementOf(const RansacTask& task, const FramePair& pair) {
   RefineOptions refine = task.estimate.refine;
   refine.prior_kind = FindSolver(task.estimate.solver)->prior;
   refine.threshold_px = task.estimate.ransac.threshold_px;
@@ -148,7 +141,7 @@ std::optional<double> Efficiency(const std::vector<double>& errors,
 // Collects the pairs of a row.
 class Collector {
  public:
-  Collector(const Task& task, RansacBenchmarkRow* row) : task_(task), row_(*row) {}
+  Collector(const RansacTask& task, RansacBenchmarkRow* row) : task_(task), row_(*row) {}
 
   void Add(const Problem& problem) {
     const MotionEstimate estimate = EstimateTimed(task_, problem.pair);
@@ -240,7 +233,7 @@ class Collector {
     if (direction) clean_direction_.push_back(*direction);
   }
 
-  const Task& task_;
+  const RansacTask& task_;
   RansacBenchmarkRow& row_;
   double matches_ = 0.0;
   int with_bound_ = 0, with_clean_ = 0, successes_ = 0, missed_ = 0, static_wins_ = 0;
@@ -249,7 +242,7 @@ class Collector {
   std::vector<double> good_rotation_, bound_rotation_, good_direction_, bound_direction_;
 };
 
-RansacBenchmarkRow RunTask(const Task& task, const std::vector<Problem>& problems) {
+RansacBenchmarkRow RunTask(const RansacTask& task, const std::vector<Problem>& problems) {
   RansacBenchmarkRow row;
   row.solver = task.opengv.empty() ? task.estimate.solver : task.opengv;
   row.form = task.opengv.empty() ? RefineFormName(task.estimate.refine.form) : "own";
@@ -260,111 +253,6 @@ RansacBenchmarkRow RunTask(const Task& task, const std::vector<Problem>& problem
   for (const Problem& problem : problems) collector.Add(problem);
   collector.Finish();
   return row;
-}
-
-// One part of the estimator left out or added.
-struct Variant {
-  const char* name;
-  void (*modify)(EstimateOptions* options);
-};
-
-const std::vector<Variant>& Variants() {
-  static const std::vector<Variant> variants = {
-      {"default", [](EstimateOptions*) {}},
-      {"no LO, no finalists", [](EstimateOptions* o) { o->ransac.local_optimization = false; }},
-      {"no finalists", [](EstimateOptions* o) { o->ransac.num_finalists = 0; }},
-      {"min_iterations 1", [](EstimateOptions* o) { o->ransac.min_iterations = 1; }},
-      {"no PROSAC", [](EstimateOptions* o) { o->ransac.prosac = false; }},
-      {"no early termination", [](EstimateOptions* o) { o->ransac.early_termination = false; }},
-      {"no bail-out test", [](EstimateOptions* o) { o->ransac.bail_out = false; }},
-      {"MAGSAC++", [](EstimateOptions* o) { o->ransac.score = ScoreKind::kMagsac; }},
-      {"spread samples", [](EstimateOptions* o) { o->ransac.spread_samples = true; }},
-  };
-  return variants;
-}
-
-std::vector<std::string> DefaultSolvers(RansacExperiment experiment) {
-  switch (experiment) {
-    case RansacExperiment::kOutliers:
-    case RansacExperiment::kMoving:
-      return {"4pt-approx", "4pt-axis", "4pt", "3pt", "5pt+1"};
-    case RansacExperiment::kAblation:
-      return {"4pt-approx"};
-    default:
-      return {"4pt-approx", "4pt-axis-approx", "3pt", "17pt-li", "6pt-ventura", "5pt+1"};
-  }
-}
-
-std::vector<Task> MakeTasks(const RansacBenchmarkOptions& options) {
-  Task base;
-  base.scene.num_matches = 626;
-  base.scene.outlier_share = 0.3;
-  base.scene.match_scores = true;
-  base.scene.seed = options.seed;
-  base.estimate.ransac.seed = options.seed;
-  const std::vector<std::string> solvers =
-      options.solvers.empty() ? DefaultSolvers(options.experiment) : options.solvers;
-  const auto with_solver = [](Task task, const std::string& solver) {
-    task.estimate.solver = solver;
-    const bool planar = FindSolver(solver)->prior == PriorKind::kPlanar;
-    task.scene.motion = planar ? MotionPattern::kPlanar : MotionPattern::kRandom;
-    return task;
-  };
-
-  std::vector<Task> tasks;
-  switch (options.experiment) {
-    case RansacExperiment::kSpeed:
-    case RansacExperiment::kFiles:
-      for (const std::string& solver : solvers) {
-        Task task = with_solver(base, solver);
-        tasks.push_back(task);
-        if (FindSolver(solver)->prior == PriorKind::kNone) continue;
-        task.estimate.refine.form = RefineForm::kPrior;
-        tasks.push_back(task);
-      }
-      if (!options.solvers.empty()) break;
-      for (const SolverInfo& peer : OpenGvPeers()) {
-        // Its bound is that of the form full.
-        Task task = with_solver(base, "17pt-li");
-        task.opengv = peer.name;
-        tasks.push_back(task);
-      }
-      break;
-    case RansacExperiment::kOutliers:
-      for (int percent = 10; percent <= 80; percent += 10) {
-        // Matches at every share, so that the rows differ in the outliers alone.
-        constexpr int kInliers = 300;
-        const int all = static_cast<int>(std::lround(kInliers * 100.0 / (100 - percent)));
-        Task task = base;
-        task.scene.num_matches = all;
-        task.scene.outlier_share = (all - kInliers) / static_cast<double>(all);
-        for (const std::string& solver : solvers) tasks.push_back(with_solver(task, solver));
-      }
-      break;
-    case RansacExperiment::kAblation:
-      for (const double share : {0.3, 0.7}) {
-        for (const std::string& solver : solvers) {
-          for (const Variant& variant : Variants()) {
-            Task task = with_solver(base, solver);
-            task.scene.outlier_share = share;
-            task.variant = variant.name;
-            variant.modify(&task.estimate);
-            tasks.push_back(task);
-          }
-        }
-      }
-      break;
-    case RansacExperiment::kMoving:
-      for (const auto& [moving, outliers] :
-           std::vector<std::pair<double, double>>{{0.3, 0.0}, {0.3, 0.3}, {0.45, 0.0}}) {
-        Task task = base;
-        task.scene.moving_share = moving;
-        task.scene.outlier_share = outliers;
-        for (const std::string& solver : solvers) tasks.push_back(with_solver(task, solver));
-      }
-      break;
-  }
-  return tasks;
 }
 
 constexpr std::pair<RansacExperiment, const char*> kNames[] = {
@@ -393,13 +281,13 @@ const char* RansacExperimentName(RansacExperiment experiment) {
 }
 
 int CountRansacRows(const RansacBenchmarkOptions& options) {
-  return static_cast<int>(MakeTasks(options).size());
+  return static_cast<int>(MakeRansacTasks(options).size());
 }
 
 std::vector<RansacBenchmarkRow> BenchmarkRansac(const RansacBenchmarkOptions& options,
                                                 const std::function<void()>& progress) {
   std::vector<RansacBenchmarkRow> rows;
-  for (const Task& task : MakeTasks(options)) {
+  for (const RansacTask& task : MakeRansacTasks(options)) {
     const int pairs = task.opengv.empty() ? options.pairs : std::min(options.pairs, kOpenGvPairs);
     rows.push_back(RunTask(task, MakeProblems(task.scene, pairs)));
     if (progress) progress();
@@ -412,7 +300,7 @@ std::vector<RansacBenchmarkRow> BenchmarkRansacOnFiles(const RansacBenchmarkOpti
   std::vector<Problem> problems;
   for (const FramePair& pair : pairs) problems.push_back({pair, std::nullopt});
   std::vector<RansacBenchmarkRow> rows;
-  for (Task& task : MakeTasks(options)) {
+  for (RansacTask& task : MakeRansacTasks(options)) {
     // No prior of a file is exact.
     if (!task.opengv.empty() || task.estimate.refine.form != RefineForm::kFull) continue;
     const PriorKind kind = FindSolver(task.estimate.solver)->prior;

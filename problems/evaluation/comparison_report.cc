@@ -62,6 +62,28 @@ Json PairJson(const ComparisonReport& report, size_t k) {
   return object;
 }
 
+std::string CsvDegrees(std::optional<double> radians) {
+  return radians ? CsvNumber(RadToDeg(*radians)) : "";
+}
+
+std::string CsvOptional(std::optional<double> value) { return value ? CsvNumber(*value) : ""; }
+
+// ",rotation,direction,scale"; the cells of what there is not are empty.
+std::string CsvErrors(const std::optional<MotionErrors>& errors) {
+  if (!errors) return ",,,";
+  return "," + CsvDegrees(errors->rotation) + "," + CsvDegrees(errors->direction) + "," +
+         CsvOptional(errors->scale);
+}
+
+std::string CsvRow(const std::string& solver, const PairResult& r) {
+  const std::string bound =
+      r.bound ? "," + CsvDegrees(r.bound->rotation) + "," + CsvDegrees(r.bound->direction) : ",,";
+  return CsvText(r.name) + "," + CsvText(r.sequence) + "," + solver + "," +
+         CsvText(EstimateStatusName(r.status)) + CsvErrors(r.raw) + CsvErrors(r.refined) + bound +
+         "," + CsvNumber(r.inlier_ratio) + "," + std::to_string(r.iterations) + "," +
+         CsvOptional(r.ransac_ms) + "," + CsvOptional(r.refine_ms) + "\n";
+}
+
 std::string SolverTable(const std::vector<SolverSummary>& summaries) {
   // A blank before the first column of each group. The widths given keep it to 100 columns with the
   // longest solver name.
@@ -154,25 +176,8 @@ std::string ComparisonCsv(const std::vector<SolverResults>& solvers) {
       "pair,sequence,solver,status,raw_rotation_deg,raw_translation_dir_deg,raw_scale,"
       "refined_rotation_deg,refined_translation_dir_deg,refined_scale,bound_rotation_deg,"
       "bound_translation_dir_deg,inlier_ratio,iterations,ransac_ms,refine_ms\n";
-  const auto degrees = [](std::optional<double> radians) {
-    return radians ? CsvNumber(RadToDeg(*radians)) : std::string();
-  };
-  const auto time = [](std::optional<double> ms) { return ms ? CsvNumber(*ms) : std::string(); };
   for (const auto& [solver, pairs] : solvers) {
-    for (const PairResult& r : pairs) {
-      text += CsvText(r.name) + "," + CsvText(r.sequence) + "," + solver + "," +
-              CsvText(EstimateStatusName(r.status));
-      for (const std::optional<MotionErrors>* errors : {&r.raw, &r.refined}) {
-        const bool has = errors->has_value();
-        text += "," + (has ? degrees((*errors)->rotation) : "");
-        text += "," + (has ? degrees((*errors)->direction) : "");
-        text += "," + (has && (*errors)->scale ? CsvNumber(*(*errors)->scale) : "");
-      }
-      text += "," + (r.bound ? degrees(r.bound->rotation) : "");
-      text += "," + (r.bound ? degrees(r.bound->direction) : "");
-      text += "," + CsvNumber(r.inlier_ratio) + "," + std::to_string(r.iterations) + "," +
-              time(r.ransac_ms) + "," + time(r.refine_ms) + "\n";
-    }
+    for (const PairResult& r : pairs) text += CsvRow(solver, r);
   }
   return text;
 }

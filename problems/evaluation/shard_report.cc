@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -169,6 +170,96 @@ std::string Difference(const ReportOptions& a, const ReportOptions& b) {
   return "";
 }
 
+// Why the two are not shards of one run; empty if they are.
+std::string WhyNotTogether(const ComparisonReport& a, const ComparisonReport& b) {
+  if (a.shard->count != b.shard->count || a.num_files != b.num_files) {
+    return "not shards of the same input: " + ShardText(*a.shard) + " of " +
+           std::to_string(a.num_files) + " files and " + ShardText(*b.shard) + " of " +
+           std::to_string(b.num_files);
+  }
+  if (a.version != b.version) {
+    return "made by other versions: " + VersionText(a) + " and " + VersionText(b);
+  }
+  const std::string difference = Difference(a.options, b.options);
+  return difference.empty() ? "" : "made with other options: " + difference;
+}
+
+// The report of each shard, by its index. False with what is wrong if they are not all of the
+// shards of one run, each once.
+bool CheckShards(const std::vector<std::string>& names, const std::vector<ComparisonReport>& shards,
+                 std::vector<int>* report_of, std::string* what) {
+  if (shards.empty()) {
+    *what = "no reports to merge";
+    return false;
+  }
+  const ComparisonReport& first = shards.front();
+  const auto count = static_cast<size_t>(first.shard->count);
+  // Of the count that a report states no more is believed than there are reports.
+  report_of->assign(std::min(count, shards.size()), -1);
+  std::map<int, size_t> report_of_index;
+  for (size_t k = 0; k < shards.size(); ++k) {
+    const ComparisonReport& report = shards[k];
+    const std::string why_not = WhyNotTogether(first, report);
+    if (!why_not.empty()) {
+      *what = names.front() + " and " + names[k] + ": " + why_not;
+      return false;
+    }
+    const auto [other, is_new] = report_of_index.emplace(report.shard->index, k);
+    if (!is_new) {
+      *what = names[other->second] + " and " + names[k] + ": both are shard " +
+              ShardText(*report.shard);
+      return false;
+    }
+    if (static_cast<size_t>(report.shard->index) < report_of->size()) {
+      (*report_of)[report.shard->index] = static_cast<int>(k);
+    }
+  }
+  if (shards.size() >= count) return true;
+  const auto missing = std::find(report_of->begin(), report_of->end(), -1);
+  const auto index = static_cast<int>(missing - report_of->begin());
+  *what = "shard " + ShardText({index, first.shard->count}) +
+          " is missing: " + std::to_string(shards.size()) + " reports of " + std::to_string(count);
+  return false;
+}
+
+// The results of the shards, in the order of `report_of`. False with what is wrong if nothing is
+// left.
+bool JoinShards(const std::vector<int>& report_of, std::vector<ComparisonReport>* shards,
+                ComparisonReport* whole, std::string* what) {
+  const ComparisonReport& first = shards->front();
+  whole->version = first.version;
+  whole->options = first.options;
+  whole->shard.reset();
+  whole->num_files = 0;
+  whole->solvers.clear();
+  // Where solvers were chosen by the priors, the whole has those that every shard has.
+  for (const SolverResults& solver : first.solvers) {
+    if (std::all_of(shards->begin(), shards->end(), [&](const ComparisonReport& report) {
+          return HasSolver(report, solver.solver);
+        })) {
+      whole->solvers.push_back({solver.solver, {}});
+    }
+  }
+  if (whole->solvers.empty()) {
+    *what = "no solver's prior is in every file";
+    return false;
+  }
+  for (const int k : report_of) {
+    for (SolverResults& solver : whole->solvers) {
+      for (SolverResults& part : (*shards)[k].solvers) {
+        if (part.solver != solver.solver) continue;
+        std::move(part.pairs.begin(), part.pairs.end(), std::back_inserter(solver.pairs));
+        part.pairs.clear();
+      }
+    }
+  }
+  if (whole->solvers.front().pairs.empty()) {
+    *what = "no pair in any of the reports";
+    return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool ParseShardReport(std::string_view text, const std::string& name, ComparisonReport* report,
@@ -186,69 +277,13 @@ bool ParseShardReport(std::string_view text, const std::string& name, Comparison
 
 bool MergeShards(const std::vector<std::string>& names, std::vector<ComparisonReport>* shards,
                  ComparisonReport* whole, std::string* error) {
-  const auto fail = [error](const std::string& message) {
-    *error = PrintablePath(message);
+  std::string what;
+  std::vector<int> report_of;
+  if (!CheckShards(names, *shards, &report_of, &what) ||
+      !JoinShards(report_of, shards, whole, &what)) {
+    *error = PrintablePath(what);
     return false;
-  };
-  if (shards->empty()) return fail("no reports to merge");
-  const ComparisonReport& first = shards->front();
-  const int count = first.shard->count;
-  std::vector<int> report_of(std::min<size_t>(count, shards->size()), -1);
-  for (size_t k = 0; k < shards->size(); ++k) {
-    const ComparisonReport& report = (*shards)[k];
-    const std::string both = names.front() + " and " + names[k] + ": ";
-    if (report.shard->count != count || report.num_files != first.num_files) {
-      return fail(both + "not shards of the same input: " + ShardText(*first.shard) + " of " +
-                  std::to_string(first.num_files) + " files and " + ShardText(*report.shard) +
-                  " of " + std::to_string(report.num_files));
-    }
-    if (report.version != first.version) {
-      return fail(both + "made by other versions: " + VersionText(first) + " and " +
-                  VersionText(report));
-    }
-    const std::string difference = Difference(first.options, report.options);
-    if (!difference.empty()) return fail(both + "made with other options: " + difference);
-    for (size_t other = 0; other < k; ++other) {
-      if ((*shards)[other].shard->index == report.shard->index) {
-        return fail(names[other] + " and " + names[k] + ": both are shard " +
-                    ShardText(*report.shard));
-      }
-    }
-    if (report.shard->index < static_cast<int>(report_of.size())) {
-      report_of[report.shard->index] = static_cast<int>(k);
-    }
   }
-  const auto missing = std::find(report_of.begin(), report_of.end(), -1);
-  if (static_cast<int>(shards->size()) < count) {
-    const auto index = static_cast<int>(missing - report_of.begin());
-    return fail("shard " + ShardText({index, count}) + " is missing: " +
-                std::to_string(shards->size()) + " reports of " + std::to_string(count));
-  }
-
-  whole->version = first.version;
-  whole->options = first.options;
-  whole->shard.reset();
-  whole->num_files = 0;
-  whole->solvers.clear();
-  // Where solvers were chosen by the priors, the whole has those that every shard has.
-  for (const SolverResults& solver : first.solvers) {
-    if (std::all_of(shards->begin(), shards->end(), [&](const ComparisonReport& report) {
-          return HasSolver(report, solver.solver);
-        })) {
-      whole->solvers.push_back({solver.solver, {}});
-    }
-  }
-  if (whole->solvers.empty()) return fail("no solver's prior is in every file");
-  for (const int k : report_of) {
-    for (SolverResults& solver : whole->solvers) {
-      for (SolverResults& part : (*shards)[k].solvers) {
-        if (part.solver != solver.solver) continue;
-        std::move(part.pairs.begin(), part.pairs.end(), std::back_inserter(solver.pairs));
-        part.pairs.clear();
-      }
-    }
-  }
-  if (whole->solvers.front().pairs.empty()) return fail("no pair in any of the reports");
   return true;
 }
 

@@ -272,6 +272,94 @@ bool ListPairs(const SequenceMatchingOptions& options, const ImageSequence& sequ
   return !pairs->empty();
 }
 
+// Notes the ends of the range without an image, and how many of its pairs have none; `num_pairs` of
+// them have some.
+void NoteMissingImages(const SequenceMatchingOptions& options, const ImageSequence& sequence,
+                       size_t num_pairs, SequenceMatchingSummary* summary) {
+  const int end = options.first + summary->num_pairs * options.stride;
+  for (const auto& [frame, which] : {std::pair(options.first, "first"), std::pair(end, "last")}) {
+    const ImageFrame* const there = sequence.frames.Find(frame);
+    if (there != nullptr && std::any_of(there->images.begin(), there->images.end(), Exists)) {
+      continue;
+    }
+    summary->notes.push_back("frame " + std::to_string(frame) + ", the " + which +
+                             " of the range, has no images");
+  }
+  const int without = summary->num_pairs - static_cast<int>(num_pairs);
+  if (without > 0) {
+    summary->notes.push_back(std::to_string(without) + (without == 1 ? " pair" : " pairs") +
+                             " of the range have no image at all");
+  }
+}
+
+// Matches pairs of frames and writes their files. Match() may run on several threads, each pair
+// once.
+class PairMatcher {
+ public:
+  PairMatcher(const FeatureOptions& options, const ImageSequence& sequence, std::string directory,
+              const std::vector<FrameIndices>& pairs)
+      : options_(options),
+        sequence_(sequence),
+        directory_(std::move(directory)),
+        pairs_(pairs),
+        errors_(pairs.size()),
+        written_(pairs.size(), 0) {
+    for (const FrameIndices& pair : pairs) {
+      frames_[pair.frame1].AddUse();
+      frames_[pair.frame2].AddUse();
+    }
+  }
+
+  void Match(int k) {
+    const FrameIndices& indices = pairs_[k];
+    const std::string path = (fs::path(directory_) / indices.FileName()).string();
+    // No exception may leave a thread, not even that of an image too large for the memory.
+    try {
+      written_[k] = Write(indices, path, &errors_[k]) ? 1 : 0;
+    } catch (const std::exception& exception) {
+      errors_[k] = PrintablePath(path) + ": not written: " + ExceptionMessage(exception);
+    }
+    frames_.at(indices.frame1).Release();
+    frames_.at(indices.frame2).Release();
+  }
+
+  // What was written and what failed; after the last Match().
+  void Report(SequenceMatchingSummary* summary) const {
+    for (const auto& [number, frame] : frames_) {
+      summary->missing.insert(summary->missing.end(), frame.missing().begin(),
+                              frame.missing().end());
+      summary->errors.insert(summary->errors.end(), frame.errors().begin(), frame.errors().end());
+    }
+    for (size_t k = 0; k < pairs_.size(); ++k) {
+      summary->written += written_[k];
+      if (!errors_[k].empty()) summary->errors.push_back(errors_[k]);
+    }
+  }
+
+ private:
+  // False without a message if the images of a frame cannot be used: the frame has it.
+  bool Write(const FrameIndices& indices, const std::string& path, std::string* error) {
+    const auto features1 = frames_.at(indices.frame1).Get(options_, sequence_, indices.frame1);
+    const auto features2 = frames_.at(indices.frame2).Get(options_, sequence_, indices.frame2);
+    if (features1 == nullptr || features2 == nullptr) return false;
+    FramePair pair = MakePair(sequence_, indices);
+    std::string what;
+    if (!AddMatches(options_, *features1, *features2, &pair, &what)) {
+      *error = PrintablePath(path) + ": not written: " + what;
+      return false;
+    }
+    return WriteMatchFile(path, pair, error);
+  }
+
+  const FeatureOptions& options_;
+  const ImageSequence& sequence_;
+  const std::string directory_;
+  const std::vector<FrameIndices>& pairs_;
+  std::map<int, FrameFeatures> frames_;
+  std::vector<std::string> errors_;
+  std::vector<char> written_;
+};
+
 }  // namespace
 
 bool SequenceMatchingOptions::IsValid(std::string* error) const {
@@ -303,19 +391,7 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
       !PrepareDirectory(options, sequence, pairs, directory, &kept, error)) {
     return false;
   }
-  const int end = options.first + summary->num_pairs * options.stride;
-  for (const auto& [frame, which] : {std::pair(options.first, "first"), std::pair(end, "last")}) {
-    const ImageFrame* const there = sequence.frames.Find(frame);
-    if (there != nullptr && std::any_of(there->images.begin(), there->images.end(), Exists))
-      continue;
-    summary->notes.push_back("frame " + std::to_string(frame) + ", the " + which +
-                             " of the range, has no images");
-  }
-  const int without = summary->num_pairs - static_cast<int>(pairs.size());
-  if (without > 0) {
-    summary->notes.push_back(std::to_string(without) + (without == 1 ? " pair" : " pairs") +
-                             " of the range have no image at all");
-  }
+  NoteMissingImages(options, sequence, pairs.size(), summary);
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
                              [&](const FrameIndices& p) { return kept.count(p.FileName()) > 0; }),
               pairs.end());
@@ -323,55 +399,19 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
   const int todo = static_cast<int>(pairs.size());
   begin(todo);
 
-  std::map<int, FrameFeatures> frames;
-  for (const FrameIndices& pair : pairs) {
-    frames[pair.frame1].AddUse();
-    frames[pair.frame2].AddUse();
-  }
-  std::vector<std::string> errors(todo);
-  std::vector<char> written(todo, 0);
-  const auto match = [&](int k) {
-    const FrameIndices& indices = pairs[k];
-    const std::string path = (fs::path(directory) / indices.FileName()).string();
-    // Nothing may leave a thread, not even that there is no memory for an image.
-    try {
-      const auto features1 =
-          frames.at(indices.frame1).Get(options.features, sequence, indices.frame1);
-      const auto features2 =
-          frames.at(indices.frame2).Get(options.features, sequence, indices.frame2);
-      if (features1 != nullptr && features2 != nullptr) {
-        FramePair pair = MakePair(sequence, indices);
-        std::string what;
-        if (!AddMatches(options.features, *features1, *features2, &pair, &what)) {
-          errors[k] = PrintablePath(path) + ": not written: " + what;
-        } else {
-          written[k] = WriteMatchFile(path, pair, &errors[k]) ? 1 : 0;
-        }
-      }
-    } catch (const std::exception& exception) {
-      errors[k] = PrintablePath(path) + ": not written: " + ExceptionMessage(exception);
-    }
-    frames.at(indices.frame1).Release();
-    frames.at(indices.frame2).Release();
-    step();
-  };
+  PairMatcher matcher(options.features, sequence, directory, pairs);
   // Neighbours are worked on by one thread, which has extracted the frame that they share; with a
   // thread for each pair the second would wait for it.
   constexpr int kMaxRun = 8;
   const int threads = std::max(options.num_threads, 1);
   const int run = std::clamp((todo + threads - 1) / threads, 1, kMaxRun);
   ParallelFor((todo + run - 1) / run, threads, [&](int r) {
-    for (int k = r * run; k < std::min((r + 1) * run, todo); ++k) match(k);
+    for (int k = r * run; k < std::min((r + 1) * run, todo); ++k) {
+      matcher.Match(k);
+      step();
+    }
   });
-
-  for (const auto& [number, frame] : frames) {
-    summary->missing.insert(summary->missing.end(), frame.missing().begin(), frame.missing().end());
-    summary->errors.insert(summary->errors.end(), frame.errors().begin(), frame.errors().end());
-  }
-  for (int k = 0; k < todo; ++k) {
-    summary->written += written[k];
-    if (!errors[k].empty()) summary->errors.push_back(errors[k]);
-  }
+  matcher.Report(summary);
   return true;
 }
 

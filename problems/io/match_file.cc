@@ -83,27 +83,35 @@ class Parser {
   // Splits the next line that has content into columns_. False at the end of the text; line_ is
   // then the last line.
   bool NextLine() {
-    const char* p = pos_;
-    while (p != end_) {
+    while (pos_ != end_) {
       ++line_;
-      num_columns_ = 0;
-      for (;;) {
-        while (p != end_ && IsBlank(*p)) ++p;
-        if (p == end_ || *p == '\n') break;
-        if (num_columns_ == 0 && *p == '#') {
-          p = std::find(p, end_, '\n');
-          break;
-        }
-        const char* const word = p;
-        while (p != end_ && *p != '\n' && !IsBlank(*p)) ++p;
-        if (num_columns_ < kMaxColumns) columns_[num_columns_] = {word, size_t(p - word)};
-        ++num_columns_;
-      }
-      if (p != end_) ++p;
-      pos_ = p;
+      SplitLine();
       if (num_columns_ > 0) return true;
     }
     return false;
+  }
+
+  // The next word of the line at *p, which moves behind it; empty at the end of the line.
+  std::string_view NextWord(const char** p) const {
+    while (*p != end_ && IsBlank(**p)) ++*p;
+    const char* const begin = *p;
+    while (*p != end_ && **p != '\n' && !IsBlank(**p)) ++*p;
+    return {begin, static_cast<size_t>(*p - begin)};
+  }
+
+  // Splits the line at pos_ and moves behind it. A comment has no columns.
+  void SplitLine() {
+    const char* p = pos_;
+    num_columns_ = 0;
+    for (std::string_view word = NextWord(&p); !word.empty(); word = NextWord(&p)) {
+      if (num_columns_ == 0 && word[0] == '#') {
+        p = std::find(p, end_, '\n');
+        break;
+      }
+      if (num_columns_ < kMaxColumns) columns_[num_columns_] = word;
+      ++num_columns_;
+    }
+    pos_ = p == end_ ? p : p + 1;
   }
 
   // The usage's word for a column, so that messages name what the format names.
