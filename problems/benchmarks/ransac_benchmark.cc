@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/enum_names.h"
 #include "rigel/core/grouped_matches.h"
 #include "rigel/core/metrics.h"
 #include "rigel/minimal/catalogue.h"
@@ -60,12 +61,9 @@ std::vector<Problem> MakeProblems(const SceneOptions& scene, int pairs) {
   return problems;
 }
 
-// The noise that the pair states is the refinement's.
 MotionEstimate EstimateOnce(const RansacTask& task, const FramePair& pair) {
   if (task.opengv.empty()) {
-    EstimateOptions options = task.estimate;
-    if (pair.noise_px.has_value()) options.refine.noise_px = pair.noise_px;
-    return EstimateMotion(options, pair);
+    return EstimateMotion(WithStatedNoise(task.estimate, pair), pair);
   }
   MotionEstimate estimate;
   OpenGvEstimate peer;
@@ -125,17 +123,7 @@ RefineOptions RefinementOf(const RansacTask& task, const FramePair& pair) {
 }
 
 std::optional<double> Median(const std::vector<double>& values) {
-  const auto statistics = ComputeStatistics(values);
-  return statistics ? std::optional<double>(statistics->median) : std::nullopt;
-}
-
-// RMS error over RMS bound.
-std::optional<double> Efficiency(const std::vector<double>& errors,
-                                 const std::vector<double>& bounds) {
-  const auto error = ComputeStatistics(errors);
-  const auto bound = ComputeStatistics(bounds);
-  if (!error || !bound || !(bound->rms > 0)) return std::nullopt;
-  return error->rms / bound->rms;
+  return MedianOf(ComputeStatistics(values));
 }
 
 // Collects the pairs of a row.
@@ -181,8 +169,10 @@ class Collector {
     row_.direction_deg = Median(direction_);
     row_.clean_rotation_deg = Median(clean_rotation_);
     row_.clean_direction_deg = Median(clean_direction_);
-    row_.efficiency_rotation = Efficiency(good_rotation_, bound_rotation_);
-    row_.efficiency_direction = Efficiency(good_direction_, bound_direction_);
+    row_.efficiency_rotation =
+        Efficiency(ComputeStatistics(good_rotation_), ComputeStatistics(bound_rotation_));
+    row_.efficiency_direction =
+        Efficiency(ComputeStatistics(good_direction_), ComputeStatistics(bound_direction_));
     if (with_bound_ == row_.pairs) {
       row_.success = successes_ / static_cast<double>(row_.pairs);
       row_.missed = missed_;
@@ -255,7 +245,7 @@ RansacBenchmarkRow RunTask(const RansacTask& task, const std::vector<Problem>& p
   return row;
 }
 
-constexpr std::pair<RansacExperiment, const char*> kNames[] = {
+constexpr EnumName<RansacExperiment> kExperimentNames[] = {
     {RansacExperiment::kSpeed, "speed"},
     {RansacExperiment::kOutliers, "outliers"},
     {RansacExperiment::kAblation, "ablation"},
@@ -265,19 +255,14 @@ constexpr std::pair<RansacExperiment, const char*> kNames[] = {
 }  // namespace
 
 bool ParseRansacExperiment(std::string_view name, RansacExperiment* experiment) {
-  for (const auto& [value, text] : kNames) {
-    if (name != text || value == RansacExperiment::kFiles) continue;
-    *experiment = value;
-    return true;
-  }
-  return false;
+  RansacExperiment found;
+  if (!FindValue(kExperimentNames, name, &found) || found == RansacExperiment::kFiles) return false;
+  *experiment = found;
+  return true;
 }
 
 const char* RansacExperimentName(RansacExperiment experiment) {
-  for (const auto& [value, text] : kNames) {
-    if (value == experiment) return text;
-  }
-  return "unknown";
+  return NameOf(kExperimentNames, experiment);
 }
 
 int CountRansacRows(const RansacBenchmarkOptions& options) {

@@ -8,11 +8,17 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/core/body_axes.h"
+#include "rigel/core/enum_names.h"
 #include "rigel/core/median.h"
+#include "rigel/core/metrics.h"
 #include "rigel/problems/io/table.h"
 
 namespace rigel {
 namespace {
+
+constexpr EnumName<CalibrationLevel> kLevelNames[] = {{CalibrationLevel::kNone, "none"},
+                                                      {CalibrationLevel::kTilt, "tilt"},
+                                                      {CalibrationLevel::kFull, "full"}};
 
 // Both hold for all three fits. Iterations, as the weights may go to and fro without an end; and
 // the step that ends them, far below what motions can tell.
@@ -41,10 +47,6 @@ double SmallSampleFactor(int n, int parameters) {
 }
 
 bool IsSmall(double sigma) { return sigma >= 0 && sigma <= DegToRad(kMaxCalibrationSigmaDeg); }
-
-double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 // "12.3 degrees".
 std::string DegreesText(double radians) { return FormatNumber(RadToDeg(radians), 1) + " degrees"; }
@@ -373,17 +375,7 @@ class GravityFit {
 
 }  // namespace
 
-const char* CalibrationLevelName(CalibrationLevel level) {
-  switch (level) {
-    case CalibrationLevel::kNone:
-      return "none";
-    case CalibrationLevel::kTilt:
-      return "tilt";
-    case CalibrationLevel::kFull:
-      return "full";
-  }
-  return "";
-}
+const char* CalibrationLevelName(CalibrationLevel level) { return NameOf(kLevelNames, level); }
 
 PlaneCalibration CalibratePlane(const std::vector<CalibrationMotion>& motions,
                                 const Eigen::Vector3d& start) {

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/enum_names.h"
 #include "rigel/core/metrics.h"
 #include "rigel/core/parallel.h"
 #include "rigel/core/rig_centre.h"
@@ -16,6 +17,9 @@
 
 namespace rigel {
 namespace {
+
+constexpr EnumName<MatchUse> kMatchUseNames[] = {
+    {MatchUse::kAll, "all"}, {MatchUse::kIntra, "intra"}, {MatchUse::kInter, "inter"}};
 
 MotionErrors ErrorsOf(const Pose& truth, const Pose& pose, bool direction_means, bool scale_means) {
   MotionErrors errors;
@@ -143,14 +147,18 @@ class SummaryValues {
 
 }  // namespace
 
+EstimateOptions WithStatedNoise(EstimateOptions options, const FramePair& pair) {
+  if (pair.noise_px) options.refine.noise_px = pair.noise_px;
+  return options;
+}
+
 PairResult ComparePair(const FramePair& pair, const EstimateOptions& options,
                        bool use_stated_noise) {
   PairResult result;
   result.name = pair.name;
   result.sequence = pair.sequence;
-  EstimateOptions pair_options = options;
-  if (use_stated_noise && pair.noise_px.has_value()) pair_options.refine.noise_px = pair.noise_px;
-  const MotionEstimate estimate = EstimateMotion(pair_options, pair);
+  const MotionEstimate estimate =
+      EstimateMotion(use_stated_noise ? WithStatedNoise(options, pair) : options, pair);
   result.status = estimate.status;
   result.message = estimate.message;
   result.inlier_ratio = estimate.inlier_ratio;
@@ -183,16 +191,7 @@ PairResult ComparePair(const FramePair& pair, const EstimateOptions& options,
 }
 
 bool ParseMatchUse(std::string_view name, MatchUse* use) {
-  if (name == "all") {
-    *use = MatchUse::kAll;
-  } else if (name == "intra") {
-    *use = MatchUse::kIntra;
-  } else if (name == "inter") {
-    *use = MatchUse::kInter;
-  } else {
-    return false;
-  }
-  return true;
+  return FindValue(kMatchUseNames, name, use);
 }
 
 void SelectMatches(MatchUse use, FramePair* pair) {

@@ -73,6 +73,9 @@ struct PairResult {
 // Below this the true motion has no direction that an estimate could be held to, metres.
 inline constexpr double kMinTrueTranslation = 1e-2;
 
+// The options for one pair: the noise that the pair states, if any, is the refinement's.
+EstimateOptions WithStatedNoise(EstimateOptions options, const FramePair& pair);
+
 // Runs one solver on a pair (already selected and with its prior applied). The noise that the pair
 // states is the refinement's, unless `use_stated_noise` is false.
 PairResult ComparePair(const FramePair& pair, const EstimateOptions& options,

@@ -15,16 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::optional<double> MedianOf(const std::optional<Statistics>& s) {
-  return s ? std::optional<double>(s->median) : std::nullopt;
-}
-
-std::optional<double> Ratio(const std::optional<Statistics>& error,
-                            const std::optional<Statistics>& bound) {
-  if (!error || !bound || !(bound->rms > 0)) return std::nullopt;
-  return error->rms / bound->rms;
-}
-
 Json ErrorsJson(const MotionErrors& errors) {
   Json object = {{"rotation_deg", RadToDeg(errors.rotation)}};
   if (errors.direction) object["translation_dir_deg"] = RadToDeg(*errors.direction);
@@ -116,8 +106,8 @@ std::string SolverTable(const std::vector<SolverSummary>& summaries) {
                           "NEES / dof", "dof", "99 % of right ones"});
     for (const SolverSummary& s : summaries) {
       efficiency.AddRow(
-          {s.solver, FormatNumber(Ratio(s.refined_rotation_deg, s.bound_rotation_deg), 3),
-           FormatNumber(Ratio(s.refined_direction_deg, s.bound_direction_deg), 3),
+          {s.solver, FormatNumber(Efficiency(s.refined_rotation_deg, s.bound_rotation_deg), 3),
+           FormatNumber(Efficiency(s.refined_direction_deg, s.bound_direction_deg), 3),
            FormatNumber(s.nees_ratio, 3), s.nees_ratio ? FormatNumber(s.nees_dof, 2) : "-",
            s.nees_ratio ? FormatNumber(s.nees_low, 2) + " to " + FormatNumber(s.nees_high, 2)
                         : "-"});
@@ -153,8 +143,7 @@ std::string ComparisonJson(const ComparisonReport& report,
                      {"count", report.shard->count},
                      {"files", report.num_files}};
   }
-  json["options"] = Json::object();
-  for (const auto& [name, value] : report.options) json["options"][name] = value;
+  json["options"] = OptionsJson(report.options);
   json["results"] = Json::array();
   for (const SolverSummary& s : summaries) json["results"].push_back(SummaryJson(s));
   std::string text = JsonText(json, 2);

@@ -8,8 +8,8 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/evaluation/report.h"
+#include "rigel/problems/evaluation/summary_json.h"
 #include "rigel/problems/io/csv.h"
-#include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/report_json.h"
 #include "rigel/problems/io/table.h"
 #include "rigel/problems/trajectories/drift.h"
@@ -34,13 +34,6 @@ Json SegmentJson(const SegmentDrift& s) {
           {"rotation_deg_per_100m", DegPer100m(s.rotation)}};
 }
 
-Json StatisticsJson(const Statistics& s, double unit) {
-  return {{"median", unit * s.median},
-          {"mean", unit * s.mean},
-          {"rms", unit * s.rms},
-          {"p90", unit * s.p90}};
-}
-
 Json DriftJson(const Drift& drift) {
   Json json;
   if (!drift.by_length.empty()) {
@@ -55,7 +48,7 @@ Json DriftJson(const Drift& drift) {
     kitti["by_length"] = rows;
     json["kitti"] = kitti;
   }
-  json["step"] = {{"translation_m", StatisticsJson(*drift.step_translation, 1.0)},
+  json["step"] = {{"translation_m", StatisticsJson(*drift.step_translation)},
                   {"rotation_deg", StatisticsJson(*drift.step_rotation, RadToDeg(1.0))}};
   json["end"] = {{"translation_m", drift.end_translation},
                  {"rotation_deg", RadToDeg(drift.end_rotation)}};

@@ -26,7 +26,7 @@ std::string ShortName(const std::string& name) {
   if (IsMatchFileName(text)) text.resize(text.rfind(".matches"));
   // Characters, so that the table's lines stay within 100.
   constexpr size_t kWidth = 16;
-  return Shortened(PrintablePath(text), kWidth);
+  return Shortened(Printable(text), kWidth);
 }
 
 // "R" rotation, "t" direction of translation, "s" scale; "-" where it is not observable.
@@ -36,8 +36,7 @@ std::string ObservableLetters(const RefineSummary& refine) {
 }
 
 Json MotionJson(const Pose& pose) {
-  const Eigen::Quaterniond q = pose.Quaternion();
-  return {{"q_wxyz", {q.w(), q.x(), q.y(), q.z()}}, {"t", {pose.t.x(), pose.t.y(), pose.t.z()}}};
+  return {{"q_wxyz", QuaternionJson(pose.R)}, {"t", {pose.t.x(), pose.t.y(), pose.t.z()}}};
 }
 
 // Three digits, of small ones in powers of ten.
@@ -63,10 +62,6 @@ Json TrialsJson(const std::vector<SolverTrial>& trials) {
   return entries;
 }
 
-void PutFinite(const char* key, double value, Json* object) {
-  if (std::isfinite(value) && value >= 0) (*object)[key] = value;
-}
-
 Json MatrixJson(const Matrix6d& matrix) {
   Json rows = Json::array();
   for (int i = 0; i < matrix.rows(); ++i) {
@@ -79,23 +74,23 @@ Json MatrixJson(const Matrix6d& matrix) {
 
 void PutUncertainty(const RefineSummary& refine, Json* entry) {
   if (refine.covariance) {
-    PutFinite("rotation_sd_deg", RadToDeg(refine.rotation_sigma), entry);
+    PutKnown("rotation_sd_deg", RadToDeg(refine.rotation_sigma), entry);
     if (refine.translation_observable) {
-      PutFinite("translation_dir_sd_deg", RadToDeg(refine.direction_sigma), entry);
+      PutKnown("translation_dir_sd_deg", RadToDeg(refine.direction_sigma), entry);
     }
     (*entry)["covariance"] = MatrixJson(*refine.covariance);
     if (!refine.weakest_direction.empty()) {
       (*entry)["weakest_direction"] = refine.weakest_direction;
     }
   }
-  PutFinite("relative_scale_sd", refine.relative_scale_sigma, entry);
+  PutKnown("relative_scale_sd", refine.relative_scale_sigma, entry);
 }
 
 void PutRefined(const MotionEstimate& e, Json* entry) {
   const RefineSummary& refine = e.refine;
   (*entry)["refined"] = MotionJson(e.pose);
-  PutFinite("median_residual_px", refine.median_residual_px, entry);
-  PutFinite("noise_px", refine.noise_px, entry);
+  PutKnown("median_residual_px", refine.median_residual_px, entry);
+  PutKnown("noise_px", refine.noise_px, entry);
   (*entry)["rotation_observable"] = refine.rotation_observable;
   (*entry)["translation_observable"] = refine.translation_observable;
   (*entry)["scale_observable"] = refine.scale_observable;
@@ -279,7 +274,7 @@ std::vector<std::string> RigDoubtLines(const EstimateReport& report) {
   }
   std::vector<std::string> texts;
   for (const Line& line : lines) {
-    texts.push_back(PrintablePath(line.pair) + ": " + line.first.message +
+    texts.push_back(Printable(line.pair) + ": " + line.first.message +
                     (line.others == 0 ? std::string()
                                       : " (" + std::to_string(line.others + 1) + " files alike)"));
   }
@@ -289,8 +284,7 @@ std::vector<std::string> RigDoubtLines(const EstimateReport& report) {
 std::string EstimateJson(const EstimateReport& report, bool times) {
   const std::vector<FramePair>& pairs = report.pairs;
   Json json = NewReport("rigel-estimate 1");
-  json["options"] = Json::object();
-  for (const auto& [name, value] : report.options) json["options"][name] = value;
+  json["options"] = OptionsJson(report.options);
   // Pair by pair: a tree of many would be large.
   std::string text = JsonText(json, 2);
   text.resize(text.size() - 2);  // the line break and bracket of the end

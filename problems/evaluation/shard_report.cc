@@ -13,7 +13,7 @@
 #include "rigel/core/angles.h"
 #include "rigel/problems/io/json_message.h"
 #include "rigel/problems/io/json_text.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
 
 namespace rigel {
 namespace {
@@ -50,13 +50,9 @@ MotionErrors Errors(const Json& json) {
 }
 
 EstimateStatus Status(const std::string& name) {
-  for (const EstimateStatus status :
-       {EstimateStatus::kNotRun, EstimateStatus::kSuccess, EstimateStatus::kInvalidInput,
-        EstimateStatus::kTooFewMatches, EstimateStatus::kNoSolution, EstimateStatus::kNotRefined,
-        EstimateStatus::kNoConsensus}) {
-    if (name == EstimateStatusName(status)) return status;
-  }
-  Fail("there is no status '" + name + "'");
+  EstimateStatus status;
+  if (!ParseEstimateStatus(name, &status)) Fail("there is no status '" + name + "'");
+  return status;
 }
 
 PairResult Result(const Json& json) {
@@ -269,8 +265,8 @@ bool ParseShardReport(std::string_view text, const std::string& name, Comparison
     return true;
   } catch (const std::exception& e) {
     const int line = LineOfOverflow(text, e);
-    *error = PrintablePath(name + (line > 0 ? ":" + std::to_string(line) : "") +
-                           ": not a report that can be merged: " + JsonMessage(e));
+    *error = Printable(name + (line > 0 ? ":" + std::to_string(line) : "") +
+                       ": not a report that can be merged: " + JsonMessage(e));
     return false;
   }
 }
@@ -281,7 +277,7 @@ bool MergeShards(const std::vector<std::string>& names, std::vector<ComparisonRe
   std::vector<int> report_of;
   if (!CheckShards(names, *shards, &report_of, &what) ||
       !JoinShards(report_of, shards, whole, &what)) {
-    *error = PrintablePath(what);
+    *error = Printable(what);
     return false;
   }
   return true;

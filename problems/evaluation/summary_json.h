@@ -9,6 +9,9 @@
 
 namespace rigel {
 
+// Median, mean, RMS and 90th percentile, times `unit`.
+nlohmann::ordered_json StatisticsJson(const Statistics& statistics, double unit = 1.0);
+
 nlohmann::ordered_json SummaryJson(const SolverSummary& summary);
 
 // Numbers come back as they were, to the last bit. Throws the library's exceptions on what

@@ -13,8 +13,9 @@
 
 #include "rigel/problems/images/stereo_stamps.h"
 #include "rigel/problems/io/csv.h"
+#include "rigel/problems/io/directory.h"
 #include "rigel/problems/io/input_file.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/parse_number.h"
 #include "rigel/problems/io/printable.h"
 #include "rigel/problems/io/text_lines.h"
 
@@ -27,11 +28,6 @@ constexpr double kMaxRotationError = 1e-3;  // of any element of R'R - I, and of
 // ns: ten intervals of the truth at its 200 Hz. Over more a drone's path bends.
 constexpr int64_t kMaxTruthGap = 50'000'000;
 constexpr double kSecondsPerNanosecond = 1e-9;
-
-bool IsDirectory(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored);
-}
 
 // The node's numbers. Throws YAML::Exception with what was expected.
 std::vector<double> Numbers(const YAML::Node& node, const std::string& key, size_t count) {
@@ -150,7 +146,7 @@ bool ReadImageList(const fs::path& camera, Images* images, std::string* error) {
   for (const TextLine& line : lines) {
     const std::vector<std::string_view> words = SplitAtCommas(line.text);
     int64_t time;
-    if (words.size() != 2 || !ParseTimestamp(words[0], &time) || words[1].empty()) {
+    if (words.size() != 2 || !ParseInteger(words[0], int64_t{0}, &time) || words[1].empty()) {
       *error = Where(path, line) + ": " + Quoted(line.text) +
                ", expected a time stamp in nanoseconds, a comma and a file name";
       return false;
@@ -158,7 +154,7 @@ bool ReadImageList(const fs::path& camera, Images* images, std::string* error) {
     if (!StaysInside(words[1])) {
       *error = Where(path, line) + ": " + Quoted(words[1]) +
                " leads out of the folder, expected a file in " +
-               PrintablePath((camera / "data").string());
+               Printable((camera / "data").string());
       return false;
     }
     if (!images->emplace(time, (camera / "data" / words[1]).string()).second) {
@@ -167,7 +163,7 @@ bool ReadImageList(const fs::path& camera, Images* images, std::string* error) {
     }
   }
   if (images->empty()) {
-    *error = PrintablePath(path) + ": there is no image in it";
+    *error = Printable(path) + ": there is no image in it";
     return false;
   }
   return true;
@@ -187,7 +183,7 @@ bool ReadTruth(const std::string& path, Poses* poses, std::string* error) {
       return false;
     }
     int64_t time;
-    if (!ParseTimestamp(words[0], &time)) {
+    if (!ParseInteger(words[0], int64_t{0}, &time)) {
       *error = Where(path, line) + ": " + Quoted(words[0]) + ", expected a time stamp in ns";
       return false;
     }
@@ -311,7 +307,7 @@ bool ReadEurocSequence(const std::string& root, const EurocOptions& options,
       IsDirectory(fs::path(root) / "mav0") ? fs::path(root) / "mav0" : fs::path(root);
   const auto camera_folder = [&](int k) { return mav / ("cam" + std::to_string(k)); };
   if (!IsDirectory(camera_folder(0)) || !IsDirectory(camera_folder(1))) {
-    *error = PrintablePath(root) +
+    *error = Printable(root) +
              ": expected EuRoC's folder mav0 with cam0 and cam1, or the folder that holds mav0";
     return false;
   }
@@ -329,24 +325,23 @@ bool ReadEurocSequence(const std::string& root, const EurocOptions& options,
     }
   }
   for (int k = 2; IsDirectory(camera_folder(k)); ++k) {
-    result.notes.push_back(PrintablePath(camera_folder(k).string()) +
+    result.notes.push_back(Printable(camera_folder(k).string()) +
                            ": not used; the rig is cam0 and cam1");
   }
   Stamps times;
   std::string what;
   if (!PairImages(images, options, &result, &times, &what)) {
-    *error = PrintablePath(mav.string()) + ": " + what;
+    *error = Printable(mav.string()) + ": " + what;
     return false;
   }
   for (int k = 0; k < 2; ++k) {
-    result.notes.push_back(LeftOut(PrintablePath((camera_folder(k) / "data.csv").string()),
+    result.notes.push_back(LeftOut(Printable((camera_folder(k) / "data.csv").string()),
                                    images[k].size() - times.size(), images[k].size(),
                                    k == 0 ? "cam1" : "cam0"));
   }
 
   const std::string truth_path = (mav / "state_groundtruth_estimate0" / "data.csv").string();
-  std::error_code ignored;
-  if (fs::exists(truth_path, ignored)) {
+  if (Exists(truth_path)) {
     Poses poses;
     if (!ReadTruth(truth_path, &poses, error)) return false;
     size_t without = 0;
@@ -355,7 +350,7 @@ bool ReadEurocSequence(const std::string& root, const EurocOptions& options,
       if (!result.frames[k].world_from_body) ++without;
     }
     if (without > 0) {
-      result.notes.push_back(PrintablePath(truth_path) + ": " + std::to_string(without) + " of " +
+      result.notes.push_back(Printable(truth_path) + ": " + std::to_string(without) + " of " +
                              std::to_string(times.size()) +
                              " frames lie outside it or in a gap of it and get no truth");
     }

@@ -1,14 +1,10 @@
 #include "rigel/problems/images/image_features.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <string_view>
-#include <system_error>
 #include <tuple>
 
 #include <opencv2/calib3d.hpp>
@@ -16,11 +12,16 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "rigel/core/enum_names.h"
 #include "rigel/problems/io/exception_message.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/input_file.h"
+#include "rigel/problems/io/printable.h"
 
 namespace rigel {
 namespace {
+
+constexpr EnumName<FeatureType> kFeatureNames[] = {{FeatureType::kSift, "sift"},
+                                                   {FeatureType::kOrb, "orb"}};
 
 // Of an image. The time of matching grows with their square.
 constexpr int kMaxFeatures = 20000;
@@ -30,11 +31,10 @@ constexpr float kOrbScale = 1.2f;  // between two levels of the pyramid, as Open
 double Rounded(double value) { return std::round(value * 1e4) / 1e4; }
 
 // Told here, as libpng would write about it to stderr.
-bool IsCutOffPng(const std::vector<char>& bytes) {
+bool IsCutOffPng(std::string_view bytes) {
   constexpr std::string_view kBegin = "\x89PNG";
   constexpr std::string_view kEnd = "IEND\xae\x42\x60\x82";
-  const std::string_view text(bytes.data(), bytes.size());
-  return text.substr(0, kBegin.size()) == kBegin && text.rfind(kEnd) == std::string_view::npos;
+  return bytes.substr(0, kBegin.size()) == kBegin && bytes.rfind(kEnd) == std::string_view::npos;
 }
 
 // The larger an image, the more its bytes can announce: told before anything is decoded. Pixels of
@@ -44,7 +44,7 @@ constexpr size_t kMaxImageBytes = size_t{1} << 30;
 
 // Width times height by the head of a PNG or a JPEG; 0 if there is none. Of other kinds OpenCV
 // decodes at most 2^30 pixels.
-int64_t AnnouncedPixels(const std::vector<char>& bytes) {
+int64_t AnnouncedPixels(std::string_view bytes) {
   const auto number = [&](size_t begin, size_t count) {
     int64_t value = 0;
     for (size_t k = begin; k < begin + count; ++k) {
@@ -52,11 +52,10 @@ int64_t AnnouncedPixels(const std::vector<char>& bytes) {
     }
     return value;
   };
-  const std::string_view text(bytes.data(), bytes.size());
-  if (text.substr(0, 4) == "\x89PNG") {
+  if (bytes.substr(0, 4) == "\x89PNG") {
     return bytes.size() < 24 ? 0 : number(16, 4) * number(20, 4);
   }
-  if (text.substr(0, 2) != "\xff\xd8") return 0;
+  if (bytes.substr(0, 2) != "\xff\xd8") return 0;
   // Segments: ff, kind, length with these two bytes; the frame's are c0 to cf but for three.
   for (size_t k = 2; k + 9 < bytes.size() && bytes[k] == '\xff';) {
     const auto kind = static_cast<int>(number(k + 1, 1));
@@ -69,47 +68,30 @@ int64_t AnnouncedPixels(const std::vector<char>& bytes) {
 }
 
 bool ReadImage(const std::string& path, cv::Mat* image, std::string* error) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    *error = PrintablePath(path) + ": cannot be opened: " + std::generic_category().message(errno);
-    return false;
-  }
-  std::vector<char> bytes;
-  std::error_code no_size;
-  const uintmax_t size = std::filesystem::file_size(path, no_size);
-  bool too_long = !no_size && size > kMaxImageBytes;
-  for (char buffer[1 << 16];
-       !too_long && (file.read(buffer, sizeof(buffer)) || file.gcount() > 0);) {
-    too_long = bytes.size() + static_cast<size_t>(file.gcount()) > kMaxImageBytes;
-    if (!too_long) bytes.insert(bytes.end(), buffer, buffer + file.gcount());
-  }
-  if (too_long) {
-    *error = PrintablePath(path) + ": more than 1 GiB, expected an image of no more";
-    return false;
-  }
-  if (file.bad()) {
-    *error = PrintablePath(path) + ": cannot be read";
-    return false;
-  }
+  InputBytes input;
+  if (!ReadBytes(path, &input, error, kMaxImageBytes)) return false;
+  const std::string_view bytes = input.text();
   if (IsCutOffPng(bytes)) {
-    *error = PrintablePath(path) + ": the image is cut off";
+    *error = Printable(path) + ": the image is cut off";
     return false;
   }
   const auto too_large = [&](int64_t pixels) {
-    *error = PrintablePath(path) + ": " + std::to_string(pixels) + " pixels, expected at most " +
+    *error = Printable(path) + ": " + std::to_string(pixels) + " pixels, expected at most " +
              std::to_string(kMaxPixels / 1000000) + " million";
     return false;
   };
   const int64_t announced = AnnouncedPixels(bytes);
   if (announced > kMaxPixels) return too_large(announced);
   if (!bytes.empty()) {
-    *image = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+    const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8U,
+                          const_cast<char*>(bytes.data()));  // it is only read
+    *image = cv::imdecode(encoded, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
   }
   if (static_cast<int64_t>(image->total()) > kMaxPixels) {
     return too_large(static_cast<int64_t>(image->total()));
   }
   if (!image->empty()) return true;
-  *error = PrintablePath(path) + ": not an image that can be decoded" +
+  *error = Printable(path) + ": not an image that can be decoded" +
            (bytes.empty() ? ": the file is empty" : "");
   return false;
 }
@@ -215,18 +197,10 @@ struct Nearest {
 
 }  // namespace
 
-const char* FeatureTypeName(FeatureType type) {
-  return type == FeatureType::kSift ? "sift" : "orb";
-}
+const char* FeatureTypeName(FeatureType type) { return NameOf(kFeatureNames, type); }
 
-bool ParseFeatureType(const std::string& name, FeatureType* type) {
-  for (const FeatureType candidate : {FeatureType::kSift, FeatureType::kOrb}) {
-    if (name == FeatureTypeName(candidate)) {
-      *type = candidate;
-      return true;
-    }
-  }
-  return false;
+bool ParseFeatureType(std::string_view name, FeatureType* type) {
+  return FindValue(kFeatureNames, name, type);
 }
 
 bool FeatureOptions::IsValid(std::string* error) const {
@@ -247,7 +221,7 @@ bool ExtractFeatures(const FeatureOptions& options, const ImageCamera& camera,
   if (!ReadImage(path, &image, error)) return false;
   const PinholeCamera& c = camera.camera.intrinsics;
   if (c.width > 0 && image.size() != cv::Size(c.width, c.height)) {
-    *error = PrintablePath(path) + ": " + std::to_string(image.cols) + " x " +
+    *error = Printable(path) + ": " + std::to_string(image.cols) + " x " +
              std::to_string(image.rows) + " pixels, expected " + std::to_string(c.width) + " x " +
              std::to_string(c.height) + " as the calibration says";
     return false;
@@ -284,7 +258,7 @@ bool ExtractFeatures(const FeatureOptions& options, const ImageCamera& camera,
   *features = std::move(result);
   return true;
 } catch (const std::exception& exception) {
-  *error = PrintablePath(path) + ": " + ExceptionMessage(exception);
+  *error = Printable(path) + ": " + ExceptionMessage(exception);
   return false;
 }
 

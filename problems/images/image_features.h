@@ -5,6 +5,7 @@
 #define RIGEL_PROBLEMS_IMAGES_IMAGE_FEATURES_H_
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -18,7 +19,7 @@ namespace rigel {
 enum class FeatureType { kSift, kOrb };
 
 const char* FeatureTypeName(FeatureType type);
-bool ParseFeatureType(const std::string& name, FeatureType* type);
+bool ParseFeatureType(std::string_view name, FeatureType* type);  // "sift", "orb"
 
 struct FeatureOptions {
   FeatureType type = FeatureType::kSift;

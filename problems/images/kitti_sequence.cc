@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <set>
-#include <system_error>
 
+#include "rigel/problems/io/directory.h"
 #include "rigel/problems/io/kitti_poses.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/parse_number.h"
 #include "rigel/problems/io/printable.h"
 #include "rigel/problems/io/text_lines.h"
 
@@ -39,32 +39,18 @@ int FrameOfImage(const std::string& name) {
   return frame >= 0 && name == ImageName(frame) ? frame : -1;
 }
 
-bool IsDirectory(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored);
-}
-
-bool Exists(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
-
 // The numbers of the images in a camera's folder. False with a message if one is beyond the bound.
 bool AddFrames(const fs::path& directory, std::set<int>* frames, std::string* error) {
-  std::error_code code;
-  fs::directory_iterator entry(directory, code);
-  for (; !code && entry != fs::directory_iterator(); entry.increment(code)) {
-    const std::string name = entry->path().filename().string();
+  std::string too_large;  // the name of an image
+  const auto add = [&](const std::string& name, bool /*is_directory*/) {
     const int frame = FrameOfImage(name);
-    if (frame > kMaxFrame) {
-      *error = PrintablePath((directory / name).string()) + ": expected an image number up to " +
-               std::to_string(kMaxFrame);
-      return false;
-    }
-    if (frame >= 0) frames->insert(frame);
-  }
-  if (!code) return true;
-  *error = PrintablePath(directory.string()) + ": cannot be listed: " + code.message();
+    if (frame > kMaxFrame) too_large = name;
+    if (frame >= 0 && frame <= kMaxFrame) frames->insert(frame);
+  };
+  if (!ListDirectory(directory, add, error)) return false;
+  if (too_large.empty()) return true;
+  *error = Printable((directory / too_large).string()) + ": expected an image number up to " +
+           std::to_string(kMaxFrame);
   return false;
 }
 
@@ -109,7 +95,7 @@ bool ReadCalibration(const std::string& path, const std::array<int, 2>& numbers,
       return candidate.text.compare(0, key.size(), key) == 0;
     });
     if (line == lines.end()) {
-      *error = PrintablePath(path) + ": no line '" + key + "', expected " + key +
+      *error = Printable(path) + ": no line '" + key + "', expected " + key +
                " and the 12 numbers of camera " + std::to_string(number) + "'s 3x4 projection";
       return false;
     }
@@ -148,15 +134,15 @@ std::string Unused(const fs::path& directory, const std::array<int, 2>& used) {
     names += (names.empty() ? "" : ", ") + name;
   }
   if (names.empty()) return "";
-  return PrintablePath(directory.string()) + ": not used: " + names + "; the rig is image_" +
+  return Printable(directory.string()) + ": not used: " + names + "; the rig is image_" +
          std::to_string(used[0]) + " and image_" + std::to_string(used[1]);
 }
 
 // What a file with a line a frame says about a sequence with more frames; empty if it has enough.
 std::string TooShort(const std::string& path, size_t lines, size_t frames, const char* what) {
   if (lines >= frames) return "";
-  return PrintablePath(path) + ": " + std::to_string(lines) + " lines for " +
-         std::to_string(frames) + " frames; those beyond get no " + what;
+  return Printable(path) + ": " + std::to_string(lines) + " lines for " + std::to_string(frames) +
+         " frames; those beyond get no " + what;
 }
 
 fs::path CameraFolder(const fs::path& directory, int camera) {
@@ -172,7 +158,7 @@ bool FindCameras(const fs::path& directory, std::array<int, 2>* cameras, std::st
     *cameras = pair;
     return true;
   }
-  *error = PrintablePath(directory.string()) +
+  *error = Printable(directory.string()) +
            ": expected image_0 and image_1 in it, or image_2 and image_3";
   return false;
 }
@@ -187,7 +173,7 @@ bool FindImages(const fs::path& directory, const std::array<int, 2>& cameras,
     if (!AddFrames(folder, &frames, error)) return false;
   }
   if (frames.empty()) {
-    *error = PrintablePath(folders[0]) + ": no images (000000.png, ...) in it";
+    *error = Printable(folders[0]) + ": no images (000000.png, ...) in it";
     return false;
   }
   sequence->image_path = [folders](int frame, int camera) {
@@ -231,7 +217,7 @@ bool ReadKittiSequence(const std::string& root, const std::string& name, ImageSe
                        std::string* error) {
   const fs::path directory = fs::path(root) / "sequences" / name;
   if (!IsDirectory(directory)) {
-    *error = PrintablePath(directory.string()) +
+    *error = Printable(directory.string()) +
              ": no such directory, expected sequences/NAME of KITTI odometry below the root";
     return false;
   }

@@ -14,6 +14,7 @@
 
 #include "rigel/core/parallel.h"
 #include "rigel/problems/io/csv.h"
+#include "rigel/problems/io/directory.h"
 #include "rigel/problems/io/exception_message.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/printable.h"
@@ -37,11 +38,6 @@ struct FrameIndices {
     return name;
   }
 };
-
-bool Exists(const std::string& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
 
 // The features of a frame while pairs need them: extracted by the first that asks, forgotten after
 // the last.
@@ -175,7 +171,7 @@ bool SameSettings(const fs::path& path, const std::string& text, std::string* er
     const size_t end = std::min(text.find('\n', begin), text.size());
     const std::string now = text.substr(begin, end - begin);
     if (k >= lines.size() || lines[k].text != now) {
-      *error = PrintablePath(path.string()) + ": the match files beside it were made with " +
+      *error = Printable(path.string()) + ": the match files beside it were made with " +
                (k < lines.size() ? Quoted(lines[k].text) : "other settings") + ", this run has " +
                (now.empty() ? "no such line" : Quoted(now)) + "; name another directory";
       return false;
@@ -192,26 +188,18 @@ bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequenc
   std::error_code code;
   fs::create_directories(directory, code);
   if (code) {
-    *error = PrintablePath(directory) + ": cannot be made: " + code.message();
+    *error = Printable(directory) + ": cannot be made: " + code.message();
     return false;
   }
   std::set<std::string> own, there, others;
   for (const FrameIndices& indices : pairs) own.insert(indices.FileName());
-  fs::directory_iterator entry(directory, code);
-  for (; !code && entry != fs::directory_iterator(); entry.increment(code)) {
-    const std::string name = entry->path().filename().string();
-    std::error_code ignored;
-    if (entry->is_directory(ignored)) continue;
-    if (IsMatchFileName(name)) {
-      (own.count(name) > 0 ? there : others).insert(name);
-    }
-  }
-  if (code) {
-    *error = PrintablePath(directory) + ": cannot be listed: " + code.message();
-    return false;
-  }
+  const auto add = [&](const std::string& name, bool is_directory) {
+    if (is_directory || !IsMatchFileName(name)) return;
+    (own.count(name) > 0 ? there : others).insert(name);
+  };
+  if (!ListDirectory(directory, add, error)) return false;
   const auto holds = [&](const std::set<std::string>& names) {
-    return PrintablePath(directory) + ": holds " + PrintablePath(*names.begin()) +
+    return Printable(directory) + ": holds " + Printable(*names.begin()) +
            (names.size() > 1 ? " and " + std::to_string(names.size() - 1) + " more" : "");
   };
   if (!others.empty()) {
@@ -247,7 +235,7 @@ bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequenc
 bool ListPairs(const SequenceMatchingOptions& options, const ImageSequence& sequence,
                std::vector<FrameIndices>* pairs, int* num_pairs, std::string* error) {
   const int num_frames = static_cast<int>(sequence.frames.size());
-  const std::string has = "sequence " + PrintablePath(sequence.name) + " has " +
+  const std::string has = "sequence " + Printable(sequence.name) + " has " +
                           std::to_string(num_frames) + (num_frames == 1 ? " frame" : " frames") +
                           ", 0 to " + std::to_string(num_frames - 1);
   const int last = options.last < 0 ? num_frames - 1 : options.last;
@@ -317,7 +305,7 @@ class PairMatcher {
     try {
       written_[k] = Write(indices, path, &errors_[k]) ? 1 : 0;
     } catch (const std::exception& exception) {
-      errors_[k] = PrintablePath(path) + ": not written: " + ExceptionMessage(exception);
+      errors_[k] = Printable(path) + ": not written: " + ExceptionMessage(exception);
     }
     frames_.at(indices.frame1).Release();
     frames_.at(indices.frame2).Release();
@@ -345,7 +333,7 @@ class PairMatcher {
     FramePair pair = MakePair(sequence_, indices);
     std::string what;
     if (!AddMatches(options_, *features1, *features2, &pair, &what)) {
-      *error = PrintablePath(path) + ": not written: " + what;
+      *error = Printable(path) + ": not written: " + what;
       return false;
     }
     return WriteMatchFile(path, pair, error);

@@ -1,4 +1,5 @@
-// The bytes of text files that a program is given: plain, compressed by gzip, or from stdin.
+// The bytes of files that a program is given: text, plain, compressed by gzip or from stdin, and
+// other files as they are.
 #ifndef RIGEL_PROBLEMS_IO_INPUT_FILE_H_
 #define RIGEL_PROBLEMS_IO_INPUT_FILE_H_
 
@@ -49,6 +50,10 @@ std::string InputName(const std::string& path);
 // read, is damaged, or is larger than max_bytes or than the memory.
 bool ReadInputFile(const std::string& path, InputBytes* bytes, std::string* error,
                    size_t max_bytes = kMaxInputBytes);
+
+// Reads a file as it is: nothing is decompressed, a NUL byte is one of many. False with a message
+// as above.
+bool ReadBytes(const std::string& path, InputBytes* bytes, std::string* error, size_t max_bytes);
 
 // Takes the byte order mark of UTF-8 off. False, with what there is instead and in which line (0:
 // in none), if the text is that of another encoding, or no text.

@@ -5,7 +5,8 @@
 #include <string_view>
 #include <utility>
 
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/parse_number.h"
+#include "rigel/problems/io/printable.h"
 #include "rigel/problems/io/text_lines.h"
 
 namespace rigel {
@@ -55,7 +56,7 @@ bool ReadKittiPoses(const std::string& path, std::vector<Pose>* world_from_camer
     poses.push_back(pose);
   }
   if (poses.empty()) {
-    *error = PrintablePath(path) + ": there is no pose in it";
+    *error = Printable(path) + ": there is no pose in it";
     return false;
   }
   *world_from_camera = std::move(poses);

@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <optional>
@@ -17,7 +16,9 @@
 #include "rigel/core/angles.h"
 #include "rigel/problems/io/input_file.h"
 #include "rigel/problems/io/match_file_words.h"
+#include "rigel/problems/io/parse_number.h"
 #include "rigel/problems/io/printable.h"
+#include "rigel/problems/io/table.h"
 
 namespace rigel {
 namespace {
@@ -43,11 +44,7 @@ int FindKeyword(std::string_view word) {
 // Carriage returns count as blanks, which accepts CRLF line ends.
 bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-bool ParseInteger(std::string_view word, int min, int* value) {
-  const char* const end = word.data() + word.size();
-  const auto [stop, status] = std::from_chars(word.data(), end, *value);
-  return status == std::errc() && stop == end && *value >= min;
-}
+bool IsControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
 class Parser {
  public:
@@ -75,8 +72,7 @@ class Parser {
   };
 
   bool Fail(const std::string& message) {
-    *error_ =
-        PrintablePath(name_) + (line_ > 0 ? ":" + std::to_string(line_) : "") + ": " + message;
+    *error_ = Printable(name_) + (line_ > 0 ? ":" + std::to_string(line_) : "") + ": " + message;
     return false;
   }
 
@@ -132,7 +128,7 @@ class Parser {
   }
 
   bool Number(size_t column, double* value) {
-    if (ParseNumber(columns_[column], value)) return true;
+    if (ParseFinite(columns_[column], value)) return true;
     return FailColumn(column, "a finite number");
   }
 
@@ -161,9 +157,8 @@ class Parser {
     if (!Vector(column, value)) return false;
     const double norm = value->norm();
     if (!(std::abs(norm - 1.0) <= kMaxNormError)) {
-      char text[32];
-      std::snprintf(text, sizeof(text), "%.6g", norm);
-      return Fail("the " + std::string(what) + " has norm " + text + ", expected 1 within 0.001");
+      return Fail("the " + std::string(what) + " has norm " + FormatShort(norm) +
+                  ", expected 1 within 0.001");
     }
     // What is of unit length but for rounding stays as it is, so that written files read back
     // exactly.
@@ -440,6 +435,8 @@ class Parser {
 };
 
 }  // namespace
+
+std::string PrintablePath(const std::string& path) { return Printable(path); }
 
 bool ParseMatches(std::string_view text, const std::string& name, FramePair* pair,
                   std::string* error) {

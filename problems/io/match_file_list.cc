@@ -8,8 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "rigel/problems/io/directory.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/name_order.h"
+#include "rigel/problems/io/printable.h"
 
 namespace rigel {
 namespace {
@@ -30,22 +32,19 @@ struct Listing {
 };
 
 // Adds the match files of a directory.
-void ListDirectory(const std::string& directory, Listing* listing) {
+void AddDirectory(const std::string& directory, Listing* listing) {
   namespace fs = std::filesystem;
   std::vector<std::string> names;
-  std::error_code status;
-  fs::directory_iterator entry(directory, status);
-  for (; !status && entry != fs::directory_iterator(); entry.increment(status)) {
-    std::string name = entry->path().filename().string();
-    std::error_code ignored;
-    if (IsMatchFileName(name) && !entry->is_directory(ignored)) names.push_back(std::move(name));
-  }
-  if (status) {
-    listing->errors.push_back(PrintablePath(directory) + ": cannot be listed: " + status.message());
+  std::string error;
+  const auto add = [&](const std::string& name, bool is_directory) {
+    if (IsMatchFileName(name) && !is_directory) names.push_back(name);
+  };
+  if (!ListDirectory(directory, add, &error)) {
+    listing->errors.push_back(error);
     return;
   }
   if (names.empty()) {
-    listing->errors.push_back(PrintablePath(directory) + ": no " + std::string(kSuffix) +
+    listing->errors.push_back(Printable(directory) + ": no " + std::string(kSuffix) +
                               " files in this directory");
     return;
   }
@@ -55,7 +54,7 @@ void ListDirectory(const std::string& directory, Listing* listing) {
     const std::string path = (fs::path(directory) / name).string();
     const std::string plain = name.substr(0, name.size() - 3);
     if (EndsWith(name, kCompressedSuffix) && there.count(plain) > 0) {
-      listing->errors.push_back(PrintablePath(path) + ": left out, " + PrintablePath(plain) +
+      listing->errors.push_back(Printable(path) + ": left out, " + Printable(plain) +
                                 " is there too, expected one of them");
     } else {
       listing->paths.push_back(path);
@@ -77,9 +76,9 @@ void AddItem(const std::string& item, Listing* listing) {
   std::error_code code;
   const fs::file_status status = fs::status(item, code);
   if (!fs::exists(status)) {
-    listing->errors.push_back(PrintablePath(item) + ": cannot be opened: " + code.message());
+    listing->errors.push_back(Printable(item) + ": cannot be opened: " + code.message());
   } else if (fs::is_directory(status)) {
-    ListDirectory(item, listing);
+    AddDirectory(item, listing);
   } else {
     listing->paths.push_back(item);
   }
@@ -105,7 +104,7 @@ std::vector<std::string> ListMatchFiles(const std::string& comma_separated,
   errors->insert(errors->end(), listing.errors.begin(), listing.errors.end());
   if (notes != nullptr && !listing.by_number.empty()) {
     const size_t more = listing.by_number.size() - 1;
-    notes->push_back(PrintablePath(listing.by_number.front()) +
+    notes->push_back(Printable(listing.by_number.front()) +
                      (more > 0 ? " and " + std::to_string(more) + " more directories" : "") +
                      ": files are taken in the order of the numbers in their names, which is not "
                      "the byte order of the names");

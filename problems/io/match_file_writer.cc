@@ -12,6 +12,7 @@
 #include "rigel/problems/io/gzip.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/match_file_words.h"
+#include "rigel/problems/io/parse_number.h"
 #include "rigel/problems/io/printable.h"
 #include "rigel/problems/io/whole_file.h"
 
@@ -63,7 +64,7 @@ class Formatter {
                                         std::chars_format::general, digits);
       const std::string_view word(buffer.data(), result.ptr - buffer.data());
       double rounded;
-      if (ParseNumber(word, &rounded) && is_exact(rounded)) return Number(rounded);
+      if (ParseFinite(word, &rounded) && is_exact(rounded)) return Number(rounded);
     }
     const double inf = std::numeric_limits<double>::infinity();
     double below = degrees;
@@ -151,11 +152,11 @@ bool WriteMatchFile(const std::string& path, const FramePair& pair, std::string*
   FramePair read;
   if (!ParseMatches(text, refusal, &read, error)) return false;
   if (read.time1 != pair.time1 || read.time2 != pair.time2) {
-    *error = PrintablePath(refusal) + ": one time is missing, expected both or none";
+    *error = Printable(refusal) + ": one time is missing, expected both or none";
     return false;
   }
   if (read.sequence != pair.sequence) {
-    *error = PrintablePath(refusal) + ": sequence " + Quoted(pair.sequence) +
+    *error = Printable(refusal) + ": sequence " + Quoted(pair.sequence) +
              ", expected a name without blanks";
     return false;
   }

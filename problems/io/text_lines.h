@@ -38,12 +38,6 @@ std::vector<std::string_view> SplitAtBlanks(std::string_view text);
 // Between commas, without blanks around them; may be empty.
 std::vector<std::string_view> SplitAtCommas(std::string_view text);
 
-// False if the whole word is not a finite number.
-bool ParseFinite(std::string_view word, double* value);
-
-// False if the whole word is not an integer from 0.
-bool ParseTimestamp(std::string_view word, int64_t* value);
-
 }  // namespace rigel
 
 #endif  // RIGEL_PROBLEMS_IO_TEXT_LINES_H_

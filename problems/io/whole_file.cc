@@ -10,10 +10,11 @@
 #include <filesystem>
 #include <functional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/directory.h"
+#include "rigel/problems/io/exception_message.h"
+#include "rigel/problems/io/printable.h"
 
 namespace rigel {
 namespace {
@@ -29,12 +30,8 @@ constexpr int kNumTemporaries = 10;  // as many runs can write one file at a tim
 // at the same moment could take the rest for left-overs: the first then fails, with a message.
 constexpr size_t kMaxLocks = 200;
 
-std::string SystemMessage(int error_number) {
-  return std::generic_category().message(error_number);
-}
-
 bool CannotBeWritten(const std::string& name, const std::string& why, std::string* error) {
-  *error = PrintablePath(name) + ": cannot be written: " + why;
+  *error = Printable(name) + ": cannot be written: " + why;
   return false;
 }
 
@@ -107,9 +104,8 @@ int CreateTemporary(const std::string& path, mode_t mode, std::string* temporary
 
 std::string NoTemporary(const std::string& path, int error_number) {
   const fs::path directory = fs::path(path).parent_path();
-  std::error_code ignored;
-  if (error_number == ENOENT && !directory.empty() && !fs::exists(directory, ignored)) {
-    return "the directory " + PrintablePath(directory.string()) + " does not exist";
+  if (error_number == ENOENT && !directory.empty() && !Exists(directory)) {
+    return "the directory " + Printable(directory.string()) + " does not exist";
   }
   if (error_number == EEXIST) return "other runs are writing it";
   return "no temporary file beside it: " + SystemMessage(error_number);
@@ -248,17 +244,16 @@ bool StagedFiles::Commit(std::string* error) {
 
 void RemoveLeftOvers(const std::string& directory,
                      const std::function<bool(const std::string& name)>& is_ours) {
-  std::error_code code;
   std::vector<std::string> temporaries;
-  fs::directory_iterator entry(directory, code);
-  for (; !code && entry != fs::directory_iterator(); entry.increment(code)) {
-    const std::string name = entry->path().filename().string();
+  std::string ignored;
+  const auto add = [&](const std::string& name, bool /*is_directory*/) {
     const size_t mark = name.rfind(kMark);
     if (mark != std::string::npos && mark + kMark.size() + 1 == name.size() &&
         is_ours(name.substr(0, mark))) {
-      temporaries.push_back(entry->path().string());
+      temporaries.push_back((fs::path(directory) / name).string());
     }
-  }
+  };
+  ListDirectory(directory, add, &ignored);
   for (const std::string& temporary : temporaries) RemoveLeftOver(temporary);
 }
 

@@ -1,9 +1,17 @@
 #include "rigel/problems/scenes/prior_source.h"
 
+#include "rigel/core/enum_names.h"
 #include "rigel/core/random.h"
 
 namespace rigel {
 namespace {
+
+constexpr EnumName<PriorSource> kSourceNames[] = {
+    {PriorSource::kFile, "file"}, {PriorSource::kBody, "body"}, {PriorSource::kTruth, "truth"}};
+
+constexpr EnumName<PriorNoiseAxis> kNoiseAxisNames[] = {{PriorNoiseAxis::kPitch, "pitch"},
+                                                        {PriorNoiseAxis::kRoll, "roll"},
+                                                        {PriorNoiseAxis::kRandom, "random"}};
 
 // The body's down, and whether the prior depends on it.
 class Down {
@@ -62,29 +70,11 @@ void Disturb(const PriorSourceOptions& options, int index, const BodyAxes& axes,
 }  // namespace
 
 bool ParsePriorSource(std::string_view name, PriorSource* source) {
-  if (name == "file") {
-    *source = PriorSource::kFile;
-  } else if (name == "body") {
-    *source = PriorSource::kBody;
-  } else if (name == "truth") {
-    *source = PriorSource::kTruth;
-  } else {
-    return false;
-  }
-  return true;
+  return FindValue(kSourceNames, name, source);
 }
 
 bool ParsePriorNoiseAxis(std::string_view name, PriorNoiseAxis* axis) {
-  if (name == "pitch") {
-    *axis = PriorNoiseAxis::kPitch;
-  } else if (name == "roll") {
-    *axis = PriorNoiseAxis::kRoll;
-  } else if (name == "random") {
-    *axis = PriorNoiseAxis::kRandom;
-  } else {
-    return false;
-  }
-  return true;
+  return FindValue(kNoiseAxisNames, name, axis);
 }
 
 bool ApplyPriorSource(const PriorSourceOptions& options, int index, FramePair* pair,

@@ -4,10 +4,19 @@
 #include <cmath>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/enum_names.h"
 #include "rigel/core/random.h"
 
 namespace rigel {
 namespace {
+
+constexpr EnumName<MotionPattern> kMotionNames[] = {{MotionPattern::kForward, "forward"},
+                                                    {MotionPattern::kRandom, "random"},
+                                                    {MotionPattern::kSideways, "sideways"},
+                                                    {MotionPattern::kPlanar, "planar"}};
+
+constexpr EnumName<RotationAxisPattern> kRotationAxisNames[] = {
+    {RotationAxisPattern::kY, "y"}, {RotationAxisPattern::kRandom, "random"}};
 
 // Draws of a point before giving up: a motion that leaves fewer than one point in a thousand in
 // view is out of view.
@@ -159,29 +168,11 @@ bool MoveToCar(const SceneOptions& options, const FramePair& pair, const int* ch
 }  // namespace
 
 bool ParseMotionPattern(std::string_view name, MotionPattern* pattern) {
-  if (name == "forward") {
-    *pattern = MotionPattern::kForward;
-  } else if (name == "random") {
-    *pattern = MotionPattern::kRandom;
-  } else if (name == "sideways") {
-    *pattern = MotionPattern::kSideways;
-  } else if (name == "planar") {
-    *pattern = MotionPattern::kPlanar;
-  } else {
-    return false;
-  }
-  return true;
+  return FindValue(kMotionNames, name, pattern);
 }
 
 bool ParseRotationAxisPattern(std::string_view name, RotationAxisPattern* pattern) {
-  if (name == "y") {
-    *pattern = RotationAxisPattern::kY;
-  } else if (name == "random") {
-    *pattern = RotationAxisPattern::kRandom;
-  } else {
-    return false;
-  }
-  return true;
+  return FindValue(kRotationAxisNames, name, pattern);
 }
 
 bool SceneOptions::IsValid(std::string* error) const {

@@ -8,7 +8,7 @@
 
 #include "rigel/core/rig_centre.h"
 #include "rigel/problems/io/csv.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
 #include "rigel/refine/between_factor.h"
 
 namespace rigel {
@@ -105,7 +105,7 @@ class PoseGraph {
   void Close() { open_ = false; }
 
   void Note(const std::string& text) {
-    notes_.push_back(PrintablePath(text));
+    notes_.push_back(Printable(text));
     edges_ << "# " << notes_.back() << "\n";
   }
 

@@ -7,7 +7,7 @@
 
 #include "rigel/core/rig_centre.h"
 #include "rigel/problems/io/csv.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
 
 namespace rigel {
 namespace {
@@ -139,14 +139,13 @@ std::vector<Trajectory> ChainMotions(const std::vector<FramePair>& pairs,
   for (size_t k = 0; k < pairs.size(); ++k) {
     const std::string gap = open ? WhyNotNext(pairs, positions, k) : "";
     if (!gap.empty()) {
-      notes->push_back(
-          PrintablePath(pairs[k].name + ": " + gap + ": the trajectory ended before it"));
+      notes->push_back(Printable(pairs[k].name + ": " + gap + ": the trajectory ended before it"));
       close();
     }
     const Step step = StepOf(pairs[k], estimates[k], has_inter[k] != 0);
     if (!step.why_not.empty()) {
-      notes->push_back(PrintablePath(pairs[k].name + ": " + step.why_not + ": a gap" +
-                                     (open ? ", the trajectory ends before it" : "")));
+      notes->push_back(Printable(pairs[k].name + ": " + step.why_not + ": a gap" +
+                                 (open ? ", the trajectory ends before it" : "")));
       close();
       continue;
     }
