@@ -11,6 +11,10 @@ namespace {
 
 using Tasks = std::vector<RansacTask>;
 
+// Matches of a pair, and the share of outliers: both of docs/ransac_tables.md.
+constexpr int kMatches = 626;
+constexpr double kOutlierShare = 0.3;
+
 // One part of the estimator left out or added.
 struct Variant {
   const char* name;
@@ -47,8 +51,8 @@ std::vector<std::string> DefaultSolvers(RansacExperiment experiment) {
 // The task that all others are variations of.
 RansacTask BaseTask(uint64_t seed) {
   RansacTask task;
-  task.scene.num_matches = 626;
-  task.scene.outlier_share = 0.3;
+  task.scene.num_matches = kMatches;
+  task.scene.outlier_share = kOutlierShare;
   task.scene.match_scores = true;
   task.scene.seed = seed;
   task.estimate.ransac.seed = seed;

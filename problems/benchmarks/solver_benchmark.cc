@@ -26,8 +26,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Shorter intervals would measure the clock.
+// Microseconds of a batch at least: shorter intervals would measure the clock.
 constexpr double kBatchMicroseconds = 50.0;
+// Batches that the trial run lasts, so that its estimate of a call is good.
+constexpr int kTrialBatches = 20;
+// Batches are made longer than the least by this factor: the estimate of a call may be too large.
+constexpr double kBatchMargin = 1.5;
+// Pairs tried for each problem wanted: some motions leave nothing in view.
+constexpr int kTriesPerProblem = 2;
+// Samples' worth of matches of a pair from which a sampler draws one sample.
+constexpr int kSamplesPerPair = 4;
 
 struct Problem {
   FramePair pair;
@@ -45,12 +53,12 @@ std::vector<double> TimeBatches(int n, const Run& run) {
   // The size of a batch from a trial run.
   const auto trial_start = Clock::now();
   int calls = 0;
-  while (MicrosecondsSince(trial_start) < 20 * kBatchMicroseconds) run(calls++ % n);
+  while (MicrosecondsSince(trial_start) < kTrialBatches * kBatchMicroseconds) run(calls++ % n);
   const double estimate = MicrosecondsSince(trial_start) / calls;
   const int size =
-      std::clamp(static_cast<int>(std::ceil(1.5 * kBatchMicroseconds / estimate)), 1, n);
-  const int repeats =
-      std::max(1, static_cast<int>(std::ceil(1.5 * kBatchMicroseconds / (estimate * size))));
+      std::clamp(static_cast<int>(std::ceil(kBatchMargin * kBatchMicroseconds / estimate)), 1, n);
+  const int repeats = std::max(
+      1, static_cast<int>(std::ceil(kBatchMargin * kBatchMicroseconds / (estimate * size))));
   std::vector<double> times;
   for (int begin = 0; begin + size <= n; begin += size) {
     for (int k = begin; k < begin + size; ++k) run(k);
@@ -78,10 +86,10 @@ std::vector<Problem> MakeProblems(const SolverInfo& solver, const SolverBenchmar
                                   bool inter) {
   SceneOptions scene;
   scene.num_cameras = options.num_cameras;
-  // Alternating cameras, but where the solver wants its sample from one pair: then a sampler picks
-  // it.
+  // Matches alternate between cameras. A solver that needs a sample of one camera pair gets more
+  // matches, and a sampler picks the sample.
   const bool any_sample = solver.sampling == SampleKind::kSpread;
-  scene.num_matches = any_sample ? solver.sample_size : 4 * solver.sample_size;
+  scene.num_matches = any_sample ? solver.sample_size : kSamplesPerPair * solver.sample_size;
   scene.noise_px = 0.0;
   scene.rotation_deg = options.rotation_deg;
   scene.motion = MotionPattern::kRandom;
@@ -94,14 +102,15 @@ std::vector<Problem> MakeProblems(const SolverInfo& solver, const SolverBenchmar
   scene.seed = options.seed;
   std::vector<Problem> problems;
   problems.reserve(options.trials);
-  for (int k = 0; static_cast<int>(problems.size()) < options.trials && k < 2 * options.trials;
+  for (int k = 0;
+       static_cast<int>(problems.size()) < options.trials && k < kTriesPerProblem * options.trials;
        ++k) {
     Problem problem;
     std::string error;
     Alignment alignment;
-    // A rig turned so that a large motion leaves nothing in view is no problem to solve.
+    // Fails for a rig whose cameras see nothing in common after a large motion.
     if (!MakeScenePair(scene, k, &problem.pair, &error)) continue;
-    // Its motion model is part of the prior: a circle, the chord at half the angle, forwards.
+    // Ackermann motion is on a circle, forwards: the chord is at half of the rotation angle.
     if (std::string_view(solver.name) == "2pt-ackermann") {
       Pose truth = *problem.pair.truth;
       truth.t = -(RotationY(DegToRad(0.5 * options.rotation_deg)) * Eigen::Vector3d::UnitZ());
@@ -180,7 +189,7 @@ void MeasureTimes(const SolverInfo& solver, std::vector<Problem>* problems,
                   SolverBenchmarkRow* row) {
   const int n = static_cast<int>(problems->size());
   Solutions solutions;
-  // Right before and after, as the clock of a shared machine changes.
+  // The reference is timed right before and after, as the clock rate of a shared machine changes.
   const double reference_before = ReferenceKernelMicroseconds();
   const std::vector<double> times = TimeBatches(n, [&](int k) {
     const Problem& problem = (*problems)[k];
@@ -231,7 +240,7 @@ double ReferenceKernelMicroseconds() {
   const std::vector<double> times =
       TimeBatches(kProblems, [&](int k) { sum += matrices[k].partialPivLu().solve(right); });
   const auto statistics = ComputeStatistics(times);
-  // The sum is looked at, so that the work is not optimized away.
+  // The sum is used, so that the compiler does not remove the work.
   return statistics && std::isfinite(sum.sum()) ? statistics->median : 0.0;
 }
 

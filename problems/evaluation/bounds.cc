@@ -20,9 +20,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Errors of noise-free files are rounding, of which no fraction means anything: degrees, and the
-// fraction of a scale.
-constexpr double kRounding = 1e-9;
+// Degrees, and fraction of a scale. Errors of noise-free files are rounding: a fraction of them is
+// no bound.
+constexpr double kErrorRounding = 1e-9;
 
 // The number at a path like "refined.rotation_deg.median"; none if there is none.
 std::optional<double> NumberAt(const Json& entry, std::string_view path) {
@@ -38,7 +38,7 @@ std::optional<double> NumberAt(const Json& entry, std::string_view path) {
   return place->is_number() ? std::optional<double>(place->get<double>()) : std::nullopt;
 }
 
-// An entry with all that a report may say of a solver.
+// An entry with every statistic that a report may have.
 Json CompleteEntry() {
   SolverSummary s;
   s.raw_rotation_deg = s.raw_direction_deg = s.raw_scale = Statistics();
@@ -51,7 +51,7 @@ Json CompleteEntry() {
 
 // "4pt-axis", "4pt-axis, sequence 06".
 std::string EntryName(const SolverSummary& entry) {
-  // Of a message's part: names in a report that somebody else wrote may be of any length.
+  // Bytes of the name in a message: a name in a foreign report may have any length.
   constexpr size_t kMaxBytes = 60;
   std::string name = entry.solver;
   if (entry.sequence != "all") name += ", sequence " + entry.sequence;
@@ -105,7 +105,7 @@ void CheckEntry(const SolverSummary& before, const SolverSummary& now, double to
   if (earlier.contains(group)) {
     for (const auto& [quantity, statistics] : earlier.at(group).items()) {
       for (const auto& [statistic, ignored] : statistics.items()) {
-        check(group + "." + quantity + "." + statistic, kRounding);
+        check(group + "." + quantity + "." + statistic, kErrorRounding);
       }
     }
   }
@@ -157,7 +157,7 @@ bool ParseStatisticBounds(std::string_view text, std::vector<StatisticBound>* bo
     parsed.push_back(std::move(bound));
   }
   if (parsed.empty() && !all.empty()) {
-    *error = "no bound in '" + Printable(std::string(all)) + "'";
+    *error = "no bound in '" + Printable(std::string(all)) + "', expected STATISTIC:LIMIT,...";
     return false;
   }
   *bounds = std::move(parsed);

@@ -41,12 +41,12 @@ double ChiSquareQuantileRatio(double dof, double z) {
   return root * root * root;
 }
 
-// Only of the forms that take nothing as exact: the others' covariance leaves something out.
+// Only for the forms that take nothing as exact: the covariance of the others is not complete.
 void FillNees(const Pose& truth, const MotionEstimate& estimate, RefineForm form,
               PairResult* result) {
   const bool complete = form == RefineForm::kFull || form == RefineForm::kBundle;
   if (!complete || !estimate.refine.covariance || !estimate.refine.translation_observable) return;
-  // Of the motion that was fitted: its length is what may have been held.
+  // For the motion of the fitted point: its length may have been held fixed.
   const Eigen::Vector3d& point = estimate.refine.fitted_point;
   const Pose fitted = MotionOfPoint(estimate.pose, point);
   const Eigen::Vector3d true_b = MotionOfPoint(truth, point).t;

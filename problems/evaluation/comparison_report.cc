@@ -1,8 +1,8 @@
-// Tables, JSON and CSV of rigel_compare.
+#include "rigel/problems/evaluation/comparison_report.h"
+
 #include <nlohmann/json.hpp>
 
 #include "rigel/core/angles.h"
-#include "rigel/problems/evaluation/report.h"
 #include "rigel/problems/evaluation/sequence_tables.h"
 #include "rigel/problems/evaluation/summary_json.h"
 #include "rigel/problems/io/csv.h"
@@ -120,7 +120,7 @@ std::string SolverTable(const std::vector<SolverSummary>& summaries) {
 }  // namespace
 
 std::string ComparisonTable(const std::vector<SolverSummary>& summaries) {
-  // Of "all", which is there of each solver; sequences have tables of their own.
+  // Only the summaries over all sequences: sequences have tables of their own.
   std::vector<SolverSummary> all;
   for (const SolverSummary& s : summaries) {
     if (s.sequence == "all") all.push_back(s);
@@ -148,7 +148,7 @@ std::string ComparisonJson(const ComparisonReport& report,
   for (const SolverSummary& s : summaries) json["results"].push_back(SummaryJson(s));
   std::string text = JsonText(json, 2);
   if (per_pair) {
-    // Written line by line: there may be many, and a tree of them would be large.
+    // Written line by line: a JSON tree of many pairs would be large.
     text.resize(text.size() - 2);  // the line break and bracket of the end
     text += ",\n  \"pair_results\": [";
     for (size_t k = 0; k < report.solvers.front().pairs.size(); ++k) {

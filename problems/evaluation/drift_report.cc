@@ -1,4 +1,5 @@
-// Drift of trajectories: table and JSON of rigel_estimate.
+#include "rigel/problems/evaluation/drift_report.h"
+
 #include <algorithm>
 #include <map>
 #include <string>
@@ -7,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "rigel/core/angles.h"
-#include "rigel/problems/evaluation/report.h"
 #include "rigel/problems/evaluation/summary_json.h"
 #include "rigel/problems/io/csv.h"
 #include "rigel/problems/io/report_json.h"
@@ -116,7 +116,8 @@ std::string DriftTable(const EstimateReport& report) {
   if (remarks.empty()) return "";
   std::string text = table.Format();
   for (const auto& [remark, trajectories] : remarks) {
-    // Trajectories that a remark names; of more it tells the number, and stays a short line.
+    // Trajectories listed in a remark. Of the others the number is given, so that the line is
+    // short.
     constexpr size_t kListed = 5;
     for (size_t k = 0; k < std::min(kListed, trajectories.size()); ++k) {
       text += (k > 0 ? ", " : "") + std::to_string(trajectories[k]);

@@ -1,4 +1,5 @@
-// Tables, JSON and CSV of rigel_estimate.
+#include "rigel/problems/evaluation/estimate_report.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rigel/core/angles.h"
-#include "rigel/problems/evaluation/report.h"
+#include "rigel/problems/evaluation/drift_report.h"
 #include "rigel/problems/io/csv.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/printable.h"
@@ -19,12 +20,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The end of a path that tells the pairs of a directory apart, on one line whatever it holds.
+// The file name without ".matches", shortened and printable: a cell of a table.
 std::string ShortName(const std::string& name) {
   const size_t slash = name.find_last_of('/');
   std::string text = slash == std::string::npos ? name : name.substr(slash + 1);
   if (IsMatchFileName(text)) text.resize(text.rfind(".matches"));
-  // Characters, so that the table's lines stay within 100.
+  // Characters: with more, a line of the table would exceed 100.
   constexpr size_t kWidth = 16;
   return Shortened(Printable(text), kWidth);
 }
@@ -41,7 +42,7 @@ Json MotionJson(const Pose& pose) {
 
 // Three digits, of small ones in powers of ten.
 std::string ResidualText(double px) {
-  // Pixels: what is less would be 0.000.
+  // Pixels: a smaller number would be shown as 0.000.
   constexpr double kLeast = 5e-4;
   if (!(px > 0.0) || px >= kLeast) return FormatFitted(px, 3, 5);
   char text[32];
@@ -49,7 +50,7 @@ std::string ResidualText(double px) {
   return text;
 }
 
-// What became of the solvers of auto: of the last ones nothing, mostly.
+// The solvers that auto tried. Those that were not needed are left out.
 Json TrialsJson(const std::vector<SolverTrial>& trials) {
   Json entries = Json::array();
   for (const SolverTrial& trial : trials) {
@@ -285,7 +286,7 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
   const std::vector<FramePair>& pairs = report.pairs;
   Json json = NewReport("rigel-estimate 1");
   json["options"] = OptionsJson(report.options);
-  // Pair by pair: a tree of many would be large.
+  // Written pair by pair: a JSON tree of many pairs would be large.
   std::string text = JsonText(json, 2);
   text.resize(text.size() - 2);  // the line break and bracket of the end
   text += ",\n  \"pairs\": [";

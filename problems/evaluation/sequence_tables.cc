@@ -83,7 +83,7 @@ struct Column {
 std::vector<std::string> Marked(const std::vector<Figure>& figures, int digits) {
   std::vector<std::string> texts;
   for (const Figure& figure : figures) texts.push_back(FormatFitted(figure, digits, kFigureWidth));
-  // What is shown as equal is equally good.
+  // Figures are compared as they are shown.
   const auto shown = [](const std::string& text) { return std::strtod(text.c_str(), nullptr); };
   const std::string* best = nullptr;
   bool all_equal = true;

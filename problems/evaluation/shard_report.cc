@@ -20,8 +20,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The angle that RadToDeg() turned into `degrees`, to the last bit: statistics of a merged report
-// are then those of the whole. DegToRad() may be off by some units in the last place.
+// The angle from which RadToDeg() makes exactly `degrees`, so that a merged report has the
+// statistics of the whole. DegToRad() may be off by some units in the last place.
 double ExactRadians(double degrees) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const double radians = DegToRad(degrees);
@@ -36,7 +36,7 @@ double ExactRadians(double degrees) {
   return radians;
 }
 
-// Reading fails by exceptions, of the JSON library and these, which do not leave this file.
+// Exceptions of the JSON library and these end the reading. They do not leave this file.
 [[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
 
 MotionErrors Errors(const Json& json) {
@@ -101,7 +101,7 @@ ComparisonReport Report(std::string_view text) {
   }
   for (const Json& entry : json.at("results")) {
     const auto solver = entry.at("solver").get<std::string>();
-    // More entries of the same solver are for sequences.
+    // Further entries of a solver are those of sequences.
     if (!HasSolver(report, solver)) report.solvers.push_back({solver, {}});
   }
   if (report.solvers.empty()) Fail("it has no results");
@@ -121,8 +121,8 @@ ComparisonReport Report(std::string_view text) {
   return report;
 }
 
-// The line of the number that no double holds, 0 if it is another error: of those of syntax the
-// library tells the line, of this only the number.
+// The line of a number that is too large for a double; 0 for other errors. The library states the
+// line of syntax errors itself, but only the number for this one.
 int LineOfOverflow(std::string_view text, const std::exception& exception) {
   const std::string message = exception.what();
   const std::string what = "number overflow parsing '";
@@ -190,7 +190,7 @@ bool CheckShards(const std::vector<std::string>& names, const std::vector<Compar
   }
   const ComparisonReport& first = shards.front();
   const auto count = static_cast<size_t>(first.shard->count);
-  // Of the count that a report states no more is believed than there are reports.
+  // The stated count may be wrong: memory is bounded by the number of reports.
   report_of->assign(std::min(count, shards.size()), -1);
   std::map<int, size_t> report_of_index;
   for (size_t k = 0; k < shards.size(); ++k) {
@@ -228,7 +228,7 @@ bool JoinShards(const std::vector<int>& report_of, std::vector<ComparisonReport>
   whole->shard.reset();
   whole->num_files = 0;
   whole->solvers.clear();
-  // Where solvers were chosen by the priors, the whole has those that every shard has.
+  // If solvers were chosen by the priors, the whole report has those that every shard has.
   for (const SolverResults& solver : first.solvers) {
     if (std::all_of(shards->begin(), shards->end(), [&](const ComparisonReport& report) {
           return HasSolver(report, solver.solver);

@@ -1,5 +1,5 @@
-// A SolverSummary as the reports of rigel_compare and rigel_experiment write it. Not installed: the
-// JSON library is the build's alone.
+// A SolverSummary as JSON, as in the reports of rigel_compare and rigel_experiment. Not installed:
+// users need no JSON library.
 #ifndef RIGEL_PROBLEMS_EVALUATION_SUMMARY_JSON_H_
 #define RIGEL_PROBLEMS_EVALUATION_SUMMARY_JSON_H_
 

@@ -20,23 +20,23 @@ namespace rigel {
 inline constexpr const char* kPaperLoop = "paper";
 inline constexpr const char* kRigelLoop = "rigel";
 
-// The threshold is three sigma of the image noise, at least 0.5 px: where it is far above the
-// noise, many hypotheses have all matches as inliers and their count says little.
+// The threshold is three sigma of the image noise, at least 0.5 px. If it were far above the noise,
+// many hypotheses would have all matches as inliers, and their number would not tell them apart.
 EstimateOptions ExperimentEstimate(const std::string& solver, const std::string& loop,
                                    double noise_px);
 
-// What is said of one solver in one loop at one point.
+// The results of one solver in one loop at one point.
 struct ExperimentRow {
   ExperimentPoint point;
   std::string loop;
   SolverSummary summary;
 };
 
-// All solvers in both loops at a point; the same for any number of threads, but for the times.
-// A solver without a prior does not see the error of one: where `earlier` (may be empty) has its
-// rows of the same motion at another value of kPitch or kRoll, they are taken over. False with a
-// message if a pair cannot be made. `progress` (may be empty) is called after each pair, from any
-// thread.
+// Runs all solvers in both loops at a point. Apart from the times, results do not depend on the
+// number of threads. An error of the prior (kPitch, kRoll) does not affect a solver without a
+// prior: its rows are copied from `earlier` (may be empty) if that has them for the same motion.
+// False with a message if a pair cannot be made. `progress` (may be empty) is called after each
+// pair, from any thread.
 bool RunExperimentPoint(const ExperimentPlan& plan, const ExperimentPoint& point,
                         const std::vector<ExperimentRow>& earlier,
                         const std::function<void()>& progress, std::vector<ExperimentRow>* rows,

@@ -31,6 +31,7 @@ const Names kScaleSolvers = {"17pt-li", "6pt-ventura", "5pt+1",          "4pt-le
                              "4pt-liu", "4pt-approx",  "4pt-axis-approx"};
 const Names kKittiSolvers = {"17pt-li", "6pt-stewenius", "6pt-ventura",     "4pt-lee",
                              "4pt-liu", "4pt-approx",    "4pt-axis-approx", "3pt-approx"};
+// Both in the unit of the variable: a fine set for full runs, a coarse one for quick runs.
 const Values kTenths = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1};
 const Values kAngles = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.75, 1};
 

@@ -12,6 +12,13 @@
 namespace rigel {
 namespace {
 
+// Pixels, 1 sigma: the paper's noise where another variable is studied.
+constexpr double kDefaultNoisePx = 0.5;
+// Matches of a pair with the motion of a drive, and the share of outliers: both as in the
+// catalogue's description of kitti-motions.
+constexpr int kDrivenMatches = 300;
+constexpr double kDrivenOutliers = 0.2;
+
 // Motion pattern of a point; a random planar motion stays in the plane.
 MotionPattern PatternOf(const ExperimentSpec& spec, const std::string& motion) {
   MotionPattern pattern = MotionPattern::kRandom;
@@ -21,14 +28,14 @@ MotionPattern PatternOf(const ExperimentSpec& spec, const std::string& motion) {
 
 // 1-sigma image noise at a point.
 double NoiseAt(const ExperimentSpec& spec, const ExperimentPoint& point) {
-  return spec.variable == ExperimentVariable::kImageNoise ? *point.x : 0.5;
+  return spec.variable == ExperimentVariable::kImageNoise ? *point.x : kDefaultNoisePx;
 }
 
 bool MakeDriven(const ExperimentPlan& plan, const ExperimentPoint& point, int index,
                 FramePair* pair, std::string* error) {
   SceneOptions scene;
-  scene.num_matches = 300;
-  scene.outlier_share = 0.2;
+  scene.num_matches = kDrivenMatches;
+  scene.outlier_share = kDrivenOutliers;
   scene.seed = plan.options.seed;
   const auto first =
       std::find_if(plan.driven.begin(), plan.driven.end(),

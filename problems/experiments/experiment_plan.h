@@ -26,8 +26,8 @@ struct ExperimentOptions {
   int every = 0;      // of the motions of a drive take each n-th; 0: kQuickEvery or kEvery
 };
 
-// Pairs of a point and, of a drive, each n-th motion: more take time and scatter less.
-// docs/experiments.md has the times of both sets.
+// Pairs of a point, and every n-th motion of a drive: more pairs take longer and scatter less.
+// docs/experiments.md has the times of these two sets.
 inline constexpr int kQuickPairs = 30;
 inline constexpr int kFullPairs = 500;
 inline constexpr int kQuickEvery = 100;
@@ -46,7 +46,7 @@ struct ExperimentPoint {
   }
 };
 
-// What an experiment with its options comes to.
+// An experiment with its options: what has to be run.
 struct ExperimentPlan {
   const ExperimentSpec* spec = nullptr;
   ExperimentOptions options;  // with defaults

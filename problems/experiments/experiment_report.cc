@@ -282,7 +282,7 @@ bool ParsePointLine(const std::string& line, ExperimentPoint* point,
     return true;
   } catch (const std::exception& e) {
     *error = JsonMessage(e);
-    // Its line is always the first of this text; who calls knows that of the file.
+    // This text has one line. Its number in the file is known to the caller.
     const std::string first_line = " at line 1, column ";
     const size_t place = error->find(first_line);
     if (place != std::string::npos) error->replace(place, first_line.size(), " at column ");

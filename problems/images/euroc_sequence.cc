@@ -17,6 +17,7 @@
 #include "rigel/problems/io/input_file.h"
 #include "rigel/problems/io/parse_number.h"
 #include "rigel/problems/io/printable.h"
+#include "rigel/problems/io/rotation_check.h"
 #include "rigel/problems/io/text_lines.h"
 
 namespace rigel {
@@ -24,8 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMaxRotationError = 1e-3;  // of any element of R'R - I, and of |q| - 1
-// ns: ten intervals of the truth at its 200 Hz. Over more a drone's path bends.
+// Nanoseconds: ten intervals of the truth at 200 Hz. In a longer gap linear interpolation is too
+// inaccurate for the path of a drone.
 constexpr int64_t kMaxTruthGap = 50'000'000;
 constexpr double kSecondsPerNanosecond = 1e-9;
 
@@ -80,9 +81,7 @@ ImageCamera ParseCamera(const YAML::Node& sensor) {
   Eigen::Matrix4d body_from_camera;
   for (int k = 0; k < 16; ++k) body_from_camera(k / 4, k % 4) = T[k];
   const Eigen::Matrix3d R = body_from_camera.topLeftCorner<3, 3>();
-  const Eigen::Matrix3d off = R.transpose() * R - Eigen::Matrix3d::Identity();
-  if (!(off.cwiseAbs().maxCoeff() <= kMaxRotationError) || !(R.determinant() > 0) ||
-      body_from_camera.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+  if (!IsRotation(R) || body_from_camera.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
     throw YAML::RepresentationException(pose.Mark(), "T_BS: data is not a rigid motion");
   }
   camera.Q = Eigen::Quaterniond(R).normalized().toRotationMatrix();
@@ -253,7 +252,7 @@ std::string Milliseconds(int64_t nanoseconds) {
 bool PairImages(const Images (&images)[2], const EurocOptions& options, ImageSequence* sequence,
                 Stamps* times, std::string* what) {
   const Stamps stamps[2] = {StampsOf(images[0]), StampsOf(images[1])};
-  // Doubles of more than the largest integer do not become one.
+  // Nanoseconds: larger doubles cannot be converted to int64_t.
   constexpr double kMaxTolerance = 9e18;
   const int64_t tolerance = options.sync_tolerance_ms
                                 ? static_cast<int64_t>(std::min(

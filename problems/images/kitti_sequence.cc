@@ -138,7 +138,7 @@ std::string Unused(const fs::path& directory, const std::array<int, 2>& used) {
          std::to_string(used[0]) + " and image_" + std::to_string(used[1]);
 }
 
-// What a file with a line a frame says about a sequence with more frames; empty if it has enough.
+// The note for a file with fewer lines than the sequence has frames; empty if it has enough.
 std::string TooShort(const std::string& path, size_t lines, size_t frames, const char* what) {
   if (lines >= frames) return "";
   return Printable(path) + ": " + std::to_string(lines) + " lines for " + std::to_string(frames) +
@@ -151,6 +151,7 @@ fs::path CameraFolder(const fs::path& directory, int camera) {
 
 // The grey stereo pair, or the colour pair where there is no grey one.
 bool FindCameras(const fs::path& directory, std::array<int, 2>* cameras, std::string* error) {
+  // Numbers of the folders image_N: those of KITTI's stereo pairs, grey before colour.
   constexpr std::array<int, 2> kPairs[] = {{0, 1}, {2, 3}};
   for (const std::array<int, 2>& pair : kPairs) {
     if (!IsDirectory(CameraFolder(directory, pair[0]))) continue;

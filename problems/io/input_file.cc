@@ -14,8 +14,10 @@
 namespace rigel {
 namespace {
 
-constexpr size_t kFirstRoom = size_t{1} << 16;  // where nothing tells the size
-constexpr size_t kPiece = size_t{1} << 20;      // read at a time: a NUL byte ends it early
+// Bytes reserved first if the size is unknown, as of a pipe: a usual match file.
+constexpr size_t kFirstRoom = size_t{1} << 16;
+// Bytes read at a time. After each piece a NUL byte ends the reading.
+constexpr size_t kPiece = size_t{1} << 20;
 
 std::string BytesText(size_t bytes) {
   // Bytes: limits are told in GiB.
@@ -145,8 +147,7 @@ bool CheckText(std::string_view* text, int64_t* line, std::string* what) {
   if (text->substr(0, kByteOrderMark.size()) == kByteOrderMark) {
     text->remove_prefix(kByteOrderMark.size());
   }
-  // UTF-16 without a mark and most binary files are told here, in plain words, even where the byte
-  // would hide in a comment.
+  // Finds UTF-16 without a mark and most binary files, also where the NUL is in a comment.
   const size_t nul = text->find('\0');
   if (nul == std::string_view::npos) return true;
   *line = 1 + std::count(text->begin(), text->begin() + static_cast<ptrdiff_t>(nul), '\n');

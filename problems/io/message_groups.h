@@ -1,4 +1,4 @@
-// Messages of many files: those that say the same are one line with a count.
+// Groups equal messages of many files into one line with a count.
 #ifndef RIGEL_PROBLEMS_IO_MESSAGE_GROUPS_H_
 #define RIGEL_PROBLEMS_IO_MESSAGE_GROUPS_H_
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
 
-// As files of poses and times go 256 MiB are a month of them; lines take more memory than bytes.
+// Bytes: a month of poses at 10 Hz. As lines they take several times this memory.
 constexpr size_t kMaxTableBytes = size_t{256} << 20;
 
 // Calls line(number, text) for each line, without blanks at its ends, while that returns true.

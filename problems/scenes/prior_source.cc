@@ -13,6 +13,11 @@ constexpr EnumName<PriorNoiseAxis> kNoiseAxisNames[] = {{PriorNoiseAxis::kPitch,
                                                         {PriorNoiseAxis::kRoll, "roll"},
                                                         {PriorNoiseAxis::kRandom, "random"}};
 
+// Radians: a smaller rotation has no axis. prior_source.h states it.
+constexpr double kNoRotation = 1e-6;
+// Sine of the angle between the axis and t below which both are one line but for rounding.
+constexpr double kParallel = 1e-9;
+
 // The body's down, and whether the prior depends on it.
 class Down {
  public:
@@ -33,7 +38,7 @@ Eigen::Vector3d NormalNearestTo(const Eigen::Vector3d& axis, const Eigen::Vector
   const Eigen::Vector3d direction = t.normalized();
   const Eigen::Vector3d across = axis - direction * direction.dot(axis);
   // An axis along t does not determine the plane; all normals are as near.
-  if (!(across.norm() > 1e-9)) return TangentBasis(direction).col(0);
+  if (!(across.norm() > kParallel)) return TangentBasis(direction).col(0);
   return across.normalized();
 }
 
@@ -42,7 +47,7 @@ void TakePriorOfTruth(const Pose& truth, bool with_distance, Down* down, MotionP
   prior->gravity2 = truth.R * *prior->gravity1;
   const Eigen::Vector3d omega = LogSO3(truth.R);
   const Eigen::Vector3d axis =
-      omega.norm() > 1e-6 ? Eigen::Vector3d(omega.normalized()) : down->Use();
+      omega.norm() > kNoRotation ? Eigen::Vector3d(omega.normalized()) : down->Use();
   prior->axis = axis;
   prior->normal = axis;
   if (!(truth.t.norm() > 0)) return;

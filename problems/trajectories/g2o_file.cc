@@ -14,7 +14,7 @@
 namespace rigel {
 namespace {
 
-// A standard deviation of |t| above this, metres, is none of a rig at rest.
+// Metres. With a larger standard deviation of |t| the covariance is not used for a rig at rest.
 constexpr double kRoughStillMetres = 1.0;
 
 // Why the motion makes no edge; empty if it does.
@@ -28,8 +28,8 @@ std::string WhyNoEdge(const FramePair& pair, const MotionEstimate& e) {
   return "";
 }
 
-// Takes the rig's centre as at rest, with the covariance that the estimate has about it. Where |t|
-// was not determined at all that says nothing in metres, and its part is kStillMetres.
+// Sets the rig's centre at rest, with the covariance of the estimate about it. If |t| is not
+// determined, the covariance of the translation is kStillMetres squared.
 void SetStanding(Pose* pose, RefineSummary* refine) {
   const Eigen::Vector3d& point = refine->fitted_point;
   const Matrix6d from_body = BodyFromPointJacobian(pose->R, -point);
@@ -76,7 +76,7 @@ struct LengthCounts {
 BetweenFactor EdgeOf(const FramePair& pair, const MotionEstimate& estimate, LengthCounts* counts) {
   Pose pose = estimate.pose;
   RefineSummary refine = estimate.refine;
-  // A sigma of -1 or NaN is unknown: too large, too.
+  // A sigma of -1 or NaN is unknown.
   const bool has_length =
       refine.scale_observable ||
       (refine.relative_scale_sigma >= 0 && refine.relative_scale_sigma <= kRoughScaleRatio);
