@@ -12,7 +12,11 @@ double RotationError(const Eigen::Matrix3d& R_gt, const Eigen::Matrix3d& R) {
 double TranslationDirectionError(const Eigen::Vector3d& t_gt, const Eigen::Vector3d& t) {
   // atan2 of (0, 0) would call a missing direction a perfect one.
   if (t_gt.isZero(0) || t.isZero(0)) return std::numeric_limits<double>::quiet_NaN();
-  return std::atan2(t_gt.cross(t).norm(), t_gt.dot(t));
+  return AngleBetween(t_gt, t);
+}
+
+double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 double ScaleError(const Eigen::Vector3d& t_gt, const Eigen::Vector3d& t) {

@@ -15,6 +15,9 @@ double TranslationDirectionError(const Eigen::Vector3d& t_gt, const Eigen::Vecto
 // | |t| / |t_gt| - 1 |, a fraction. NaN if t_gt is zero.
 double ScaleError(const Eigen::Vector3d& t_gt, const Eigen::Vector3d& t);
 
+// Angle between two directions of any length, radians, in [0, pi]; 0 if either is zero.
+double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
 }  // namespace rigel
 
 #endif  // RIGEL_CORE_METRICS_H_

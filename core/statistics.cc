@@ -37,4 +37,10 @@ std::optional<Statistics> ComputeStatistics(std::vector<double> values) {
   return s;
 }
 
+std::optional<double> Efficiency(const std::optional<Statistics>& error,
+                                 const std::optional<Statistics>& bound) {
+  if (!error || !bound || !(bound->rms > 0)) return std::nullopt;
+  return error->rms / bound->rms;
+}
+
 }  // namespace rigel

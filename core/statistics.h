@@ -22,6 +22,15 @@ double QuartileDistance(std::vector<double> values);
 // count is the mean of the middle two; p90 is interpolated linearly.
 std::optional<Statistics> ComputeStatistics(std::vector<double> values);
 
+// Nothing for nothing.
+inline std::optional<double> MedianOf(const std::optional<Statistics>& statistics) {
+  return statistics ? std::optional<double>(statistics->median) : std::nullopt;
+}
+
+// RMS error over RMS bound; nothing where one does not exist or the bound is zero.
+std::optional<double> Efficiency(const std::optional<Statistics>& error,
+                                 const std::optional<Statistics>& bound);
+
 }  // namespace rigel
 
 #endif  // RIGEL_CORE_STATISTICS_H_

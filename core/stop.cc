@@ -4,19 +4,18 @@
 #include <cmath>
 #include <sstream>
 
-namespace rigel {
+#include "rigel/core/enum_names.h"
 
-const char* StopReasonName(StopReason reason) {
-  switch (reason) {
-    case StopReason::kNone:
-      return "none";
-    case StopReason::kTimeLimit:
-      return "time limit";
-    case StopReason::kCancelled:
-      return "cancelled";
-  }
-  return "unknown";
-}
+namespace rigel {
+namespace {
+
+constexpr EnumName<StopReason> kStopReasonNames[] = {{StopReason::kNone, "none"},
+                                                     {StopReason::kTimeLimit, "time limit"},
+                                                     {StopReason::kCancelled, "cancelled"}};
+
+}  // namespace
+
+const char* StopReasonName(StopReason reason) { return NameOf(kStopReasonNames, reason); }
 
 bool IsValidTimeLimit(const std::optional<double>& time_limit, std::string* error) {
   if (!time_limit.has_value() || (*time_limit >= 0 && std::isfinite(*time_limit))) return true;

@@ -1,5 +1,6 @@
 #include "rigel/minimal/catalogue.h"
 
+#include "rigel/core/enum_names.h"
 #include "rigel/minimal/solvers/five_point_plus_one.h"
 #include "rigel/minimal/solvers/four_point.h"
 #include "rigel/minimal/solvers/four_point_approx.h"
@@ -15,6 +16,14 @@
 #include "rigel/minimal/solvers/two_point_choi.h"
 
 namespace rigel {
+namespace {
+
+constexpr EnumName<PriorKind> kPriorKindNames[] = {{PriorKind::kNone, "none"},
+                                                   {PriorKind::kVertical, "known vertical"},
+                                                   {PriorKind::kAxis, "known axis"},
+                                                   {PriorKind::kPlanar, "planar"}};
+
+}  // namespace
 
 const std::vector<SolverInfo>& SolverCatalogue() {
   static const std::vector<SolverInfo> catalogue = {
@@ -74,18 +83,6 @@ std::string SolverNames() {
   return names;
 }
 
-const char* PriorKindName(PriorKind kind) {
-  switch (kind) {
-    case PriorKind::kNone:
-      return "none";
-    case PriorKind::kVertical:
-      return "known vertical";
-    case PriorKind::kAxis:
-      return "known axis";
-    case PriorKind::kPlanar:
-      return "planar";
-  }
-  return "unknown";
-}
+const char* PriorKindName(PriorKind kind) { return NameOf(kPriorKindNames, kind); }
 
 }  // namespace rigel

@@ -10,6 +10,7 @@
 
 #include "rigel/core/alignment.h"
 #include "rigel/core/body_axes.h"
+#include "rigel/core/enum_names.h"
 #include "rigel/core/grouped_matches.h"
 #include "rigel/core/pixel_unit.h"
 #include "rigel/core/rig_centre.h"
@@ -21,6 +22,15 @@
 
 namespace rigel {
 namespace {
+
+constexpr EnumName<EstimateStatus> kStatusNames[] = {
+    {EstimateStatus::kNotRun, "not run"},
+    {EstimateStatus::kSuccess, "ok"},
+    {EstimateStatus::kInvalidInput, "invalid input"},
+    {EstimateStatus::kTooFewMatches, "too few matches"},
+    {EstimateStatus::kNoSolution, "no solution"},
+    {EstimateStatus::kNotRefined, "not refined"},
+    {EstimateStatus::kNoConsensus, "no consensus"}};
 
 double MillisecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
@@ -47,24 +57,10 @@ MotionPrior WithForward(const FramePair& pair) {
 
 }  // namespace
 
-const char* EstimateStatusName(EstimateStatus status) {
-  switch (status) {
-    case EstimateStatus::kNotRun:
-      return "not run";
-    case EstimateStatus::kSuccess:
-      return "ok";
-    case EstimateStatus::kInvalidInput:
-      return "invalid input";
-    case EstimateStatus::kTooFewMatches:
-      return "too few matches";
-    case EstimateStatus::kNoSolution:
-      return "no solution";
-    case EstimateStatus::kNotRefined:
-      return "not refined";
-    case EstimateStatus::kNoConsensus:
-      return "no consensus";
-  }
-  return "unknown";
+const char* EstimateStatusName(EstimateStatus status) { return NameOf(kStatusNames, status); }
+
+bool ParseEstimateStatus(std::string_view name, EstimateStatus* status) {
+  return FindValue(kStatusNames, name, status);
 }
 
 bool EstimateOptions::IsValid(std::string* error) const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "rigel/core/frame_pair.h"
@@ -56,6 +57,8 @@ enum class EstimateStatus {
 };
 
 const char* EstimateStatusName(EstimateStatus status);
+// False if there is no status of that name.
+bool ParseEstimateStatus(std::string_view name, EstimateStatus* status);
 
 struct MotionEstimate {
   EstimateStatus status = EstimateStatus::kNotRun;

@@ -1,65 +1,42 @@
 // Names of the enumerations of refine.h, and the reports of a RefineSummary.
-#include <array>
 #include <cmath>
 #include <cstdio>
-#include <utility>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/enum_names.h"
 #include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/refine/refine.h"
 
 namespace rigel {
 namespace {
 
-template <class Enum, size_t N>
-const char* NameOf(const std::array<std::pair<Enum, const char*>, N>& names, Enum value) {
-  for (const auto& entry : names) {
-    if (entry.first == value) return entry.second;
-  }
-  return "unknown";
-}
+constexpr EnumName<RefineForm> kFormNames[] = {{RefineForm::kFull, "full"},
+                                               {RefineForm::kPrior, "prior"},
+                                               {RefineForm::kDepths, "depths"},
+                                               {RefineForm::kPriorDepths, "prior-depths"},
+                                               {RefineForm::kBundle, "bundle"}};
 
-template <class Enum, size_t N>
-bool ValueOf(const std::array<std::pair<Enum, const char*>, N>& names, std::string_view name,
-             Enum* value) {
-  for (const auto& entry : names) {
-    if (name == entry.second) {
-      *value = entry.first;
-      return true;
-    }
-  }
-  return false;
-}
+constexpr EnumName<ResidualKind> kResidualNames[] = {{ResidualKind::kSampson, "sampson"},
+                                                     {ResidualKind::kAngular, "angular"},
+                                                     {ResidualKind::kAlgebraic, "algebraic"}};
 
-constexpr std::array<std::pair<RefineForm, const char*>, 5> kFormNames = {
-    {{RefineForm::kFull, "full"},
-     {RefineForm::kPrior, "prior"},
-     {RefineForm::kDepths, "depths"},
-     {RefineForm::kPriorDepths, "prior-depths"},
-     {RefineForm::kBundle, "bundle"}}};
-
-constexpr std::array<std::pair<ResidualKind, const char*>, 3> kResidualNames = {
-    {{ResidualKind::kSampson, "sampson"},
-     {ResidualKind::kAngular, "angular"},
-     {ResidualKind::kAlgebraic, "algebraic"}}};
-
-constexpr std::array<std::pair<Termination, const char*>, 6> kTerminationNames = {
-    {{Termination::kNotRun, "not run"},
-     {Termination::kConverged, "converged"},
-     {Termination::kIterationLimit, "iteration limit"},
-     {Termination::kDegenerate, "degenerate"},
-     {Termination::kFailure, "failure"},
-     {Termination::kStopped, "stopped"}}};
+constexpr EnumName<Termination> kTerminationNames[] = {
+    {Termination::kNotRun, "not run"},
+    {Termination::kConverged, "converged"},
+    {Termination::kIterationLimit, "iteration limit"},
+    {Termination::kDegenerate, "degenerate"},
+    {Termination::kFailure, "failure"},
+    {Termination::kStopped, "stopped"}};
 
 }  // namespace
 
 const char* RefineFormName(RefineForm form) { return NameOf(kFormNames, form); }
 bool ParseRefineForm(std::string_view name, RefineForm* form) {
-  return ValueOf(kFormNames, name, form);
+  return FindValue(kFormNames, name, form);
 }
 const char* ResidualName(ResidualKind kind) { return NameOf(kResidualNames, kind); }
 bool ParseResidual(std::string_view name, ResidualKind* kind) {
-  return ValueOf(kResidualNames, name, kind);
+  return FindValue(kResidualNames, name, kind);
 }
 const char* TerminationName(Termination termination) {
   return NameOf(kTerminationNames, termination);

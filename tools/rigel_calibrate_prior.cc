@@ -348,8 +348,8 @@ int Run() {
     std::string failure;  // empty if there is a refined motion
   };
   const std::function<Estimated(const FramePair&)> work = [&](const FramePair& pair) {
-    EstimateOptions pair_options = estimate;
-    if (options.use_stated_noise && pair.noise_px) pair_options.refine.noise_px = pair.noise_px;
+    const EstimateOptions pair_options =
+        options.use_stated_noise ? WithStatedNoise(estimate, pair) : estimate;
     const MotionEstimate e = EstimateMotion(pair_options, pair);
     const bool refined = e.status == EstimateStatus::kSuccess && e.refine.IsSolutionUsable();
     // Any point of a body in planar motion will do. The rig's centre is the one that the matches

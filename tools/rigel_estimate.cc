@@ -215,8 +215,8 @@ int Run() {
     MatchCount matches;
   };
   const std::function<Estimated(const FramePair&)> work = [&](const FramePair& pair) {
-    EstimateOptions pair_options = estimate;
-    if (options.use_stated_noise && pair.noise_px) pair_options.refine.noise_px = pair.noise_px;
+    const EstimateOptions pair_options =
+        options.use_stated_noise ? WithStatedNoise(estimate, pair) : estimate;
     Estimated result{EstimateMotion(pair_options, pair),
                      {static_cast<int>(pair.matches.size()), HasInterCameraMatches(pair)}};
     result.estimate.refine.inliers = std::vector<char>();

@@ -17,7 +17,7 @@
 namespace rigel {
 namespace {
 
-// Matches of a pair: a usual number, a large one, and so many that the time of one match shows.
+// Matches of a pair: a usual number, a large one, and one that shows the time of a match.
 constexpr int kSizes[] = {200, 2000, 200000};
 // Matches, those of the last size: a pair takes long, and one is measured.
 constexpr int kHuge = 200000;

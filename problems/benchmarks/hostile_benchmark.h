@@ -1,4 +1,4 @@
-// How long an estimate can take at worst: pairs of which no match follows any motion.
+// The longest time of an estimate: pairs whose matches follow no motion.
 #ifndef RIGEL_PROBLEMS_BENCHMARKS_HOSTILE_BENCHMARK_H_
 #define RIGEL_PROBLEMS_BENCHMARKS_HOSTILE_BENCHMARK_H_
 
@@ -17,13 +17,13 @@ struct HostileBenchmarkOptions {
   uint64_t seed = 1;
 };
 
-// One solver at default options on pairs of one size. Times are of the thread's processor, so that
-// what else runs on the machine adds little.
+// One solver at default options on pairs of one size. Times are CPU times of the thread, on which
+// other processes have little effect.
 struct HostileBenchmarkRow {
   std::string solver;
   int num_matches = 0;
   int pairs = 0;
-  int motions = 0;  // pairs with a motion for an answer
+  int motions = 0;  // pairs with an estimated motion
   double median_ms = 0.0;
   double largest_ms = 0.0;
 };

@@ -1,4 +1,4 @@
-// OpenGV's generalized relative pose solvers behind Rigel's interface, to time both in one run.
+// OpenGV's generalized relative pose solvers behind Rigel's interface, to compare their times.
 #ifndef RIGEL_PROBLEMS_BENCHMARKS_OPENGV_PEERS_H_
 #define RIGEL_PROBLEMS_BENCHMARKS_OPENGV_PEERS_H_
 

@@ -20,8 +20,8 @@ namespace rigel {
 enum class RansacExperiment {
   kSpeed,     // 626 matches, 30 percent outliers; the forms full and prior
   kOutliers,  // 300 inliers and 10 to 80 percent outliers
-  kAblation,  // parts of the estimator left out or added, at 30 and 70 percent of outliers
-  kMoving,    // 626 matches, a part of them on a car that moves by itself
+  kAblation,  // parts of the estimator removed or added, at 30 and 70 percent outliers
+  kMoving,    // 626 matches, some of them on a car that moves by itself
   kFiles,     // given frame pairs
 };
 
@@ -36,8 +36,8 @@ struct RansacBenchmarkOptions {
   uint64_t seed = 1;                 // of the scenes and of RANSAC
 };
 
-// What is said of one estimator on one set of pairs. Errors are in degrees, over the pairs with an
-// estimate; what does not exist is left out.
+// Results of one estimator on one set of pairs. Errors are in degrees, over the pairs with an
+// estimate. Values that do not exist are left out.
 struct RansacBenchmarkRow {
   std::string solver;
   std::string form;     // of the refinement
@@ -48,7 +48,7 @@ struct RansacBenchmarkRow {
   int pairs = 0;
   int failures = 0;  // pairs without an estimate
 
-  // Of RANSAC and refinement together, the least of three runs of each pair (OpenGV: one run).
+  // RANSAC and refinement together, the fastest of three runs of each pair (OpenGV: one run).
   std::optional<Statistics> time_ms;
   double time_spread_ms = 0.0;  // half the distance of the quartiles
   double ransac_ms = 0.0;       // medians
@@ -60,7 +60,7 @@ struct RansacBenchmarkRow {
   std::optional<double> clean_rotation_deg, clean_direction_deg;    // of the same pairs' inliers
   std::optional<double> efficiency_rotation, efficiency_direction;  // of the pairs that succeed
   std::optional<double> success;      // share with a rotation within three bounds of the truth
-  std::optional<double> static_wins;  // share in which the motion is that of the static scene
+  std::optional<double> static_wins;  // share with the motion of the static scene, not of the car
   std::optional<int> missed;          // failed pairs that succeed if refined from the truth
 };
 
@@ -71,8 +71,8 @@ std::vector<RansacBenchmarkRow> BenchmarkRansac(const RansacBenchmarkOptions& op
 // The number of rows that it makes.
 int CountRansacRows(const RansacBenchmarkOptions& options);
 
-// The same on given pairs, with each of `options.solvers` or those of the speed experiment whose
-// prior all pairs have. Errors where the pairs have truth, success where they state their noise.
+// The same on given pairs, with each of `options.solvers`; if empty, with the solvers of the speed
+// experiment whose prior all pairs have. Errors need the truth of the pairs, success their noise.
 std::vector<RansacBenchmarkRow> BenchmarkRansacOnFiles(const RansacBenchmarkOptions& options,
                                                        const std::vector<FramePair>& pairs);
 

@@ -27,8 +27,15 @@ namespace {
 
 // Pixels, 1 sigma of a coordinate: that of docs/refinement_tables.md.
 constexpr double kNoisePx = 0.5;
-// Runs of a problem, of which the fastest counts.
+// Runs of a problem. The fastest counts, as disturbances only add time.
 constexpr int kRepetitions = 5;
+// Of the small engine: the scale of the loss in sigmas, the limit of iterations and the relative
+// step that ends them; these are what Refine() takes.
+constexpr double kLossScaleSigmas = 4.0;
+constexpr int kMaxIterations = 20;
+constexpr double kTolerance = 1e-12;
+// Pixels. A start that is off by a degree is off by 7 pixels: none is gated.
+constexpr double kThresholdPx = 30.0;
 
 struct Problem {
   FramePair pair;
@@ -77,7 +84,6 @@ RefineBenchmarkRow Run(const std::string& name, const std::string& loss,
     Pose pose;
     int count = -1;
     bool ok = false;
-    // The least of a few repetitions: what disturbs a machine only adds.
     for (int k = 0; k < kRepetitions; ++k) {
       pose = problem.start;
       const auto begin = std::chrono::steady_clock::now();
@@ -115,9 +121,9 @@ std::vector<RefineBenchmarkRow> BenchmarkRefinement(const RefineBenchmarkOptions
                          const std::vector<char> mask(problem.matches.size(), 1);
                          LeastSquaresOptions small;
                          small.loss = loss;
-                         small.loss_scale = 4.0 * kNoisePx;
-                         small.max_num_iterations = 20;
-                         small.tolerance = 1e-12;
+                         small.loss_scale = kLossScaleSigmas * kNoisePx;
+                         small.max_num_iterations = kMaxIterations;
+                         small.tolerance = kTolerance;
                          const bool ok = engine.Minimize(small, mask, pose);
                          *iterations = engine.num_iterations();
                          return ok;
@@ -139,8 +145,7 @@ std::vector<RefineBenchmarkRow> BenchmarkRefinement(const RefineBenchmarkOptions
                            refine.engine = call.engine;
                            refine.loss = loss;
                            refine.noise_px = kNoisePx;
-                           // A start that is off by a degree is off by 7 pixels.
-                           refine.threshold_px = 30.0;
+                           refine.threshold_px = kThresholdPx;
                            const RefineSummary summary =
                                Refine(refine, problem.matches, problem.pair.prior, pose);
                            *iterations = summary.num_iterations;

@@ -26,8 +26,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Shorter intervals would measure the clock.
+// Microseconds of a batch at least: shorter intervals would measure the clock.
 constexpr double kBatchMicroseconds = 50.0;
+// Batches that the trial run lasts, so that its estimate of a call is good.
+constexpr int kTrialBatches = 20;
+// Batches are made longer than the least by this factor: the estimate of a call may be too large.
+constexpr double kBatchMargin = 1.5;
+// Pairs tried for each problem wanted: some motions leave nothing in view.
+constexpr int kTriesPerProblem = 2;
+// Samples' worth of matches of a pair from which a sampler draws one sample.
+constexpr int kSamplesPerPair = 4;
 
 struct Problem {
   FramePair pair;
@@ -45,12 +53,12 @@ std::vector<double> TimeBatches(int n, const Run& run) {
   // The size of a batch from a trial run.
   const auto trial_start = Clock::now();
   int calls = 0;
-  while (MicrosecondsSince(trial_start) < 20 * kBatchMicroseconds) run(calls++ % n);
+  while (MicrosecondsSince(trial_start) < kTrialBatches * kBatchMicroseconds) run(calls++ % n);
   const double estimate = MicrosecondsSince(trial_start) / calls;
   const int size =
-      std::clamp(static_cast<int>(std::ceil(1.5 * kBatchMicroseconds / estimate)), 1, n);
-  const int repeats =
-      std::max(1, static_cast<int>(std::ceil(1.5 * kBatchMicroseconds / (estimate * size))));
+      std::clamp(static_cast<int>(std::ceil(kBatchMargin * kBatchMicroseconds / estimate)), 1, n);
+  const int repeats = std::max(
+      1, static_cast<int>(std::ceil(kBatchMargin * kBatchMicroseconds / (estimate * size))));
   std::vector<double> times;
   for (int begin = 0; begin + size <= n; begin += size) {
     for (int k = begin; k < begin + size; ++k) run(k);
@@ -78,10 +86,10 @@ std::vector<Problem> MakeProblems(const SolverInfo& solver, const SolverBenchmar
                                   bool inter) {
   SceneOptions scene;
   scene.num_cameras = options.num_cameras;
-  // Alternating cameras, but where the solver wants its sample from one pair: then a sampler picks
-  // it.
+  // Matches alternate between cameras. A solver that needs a sample of one camera pair gets more
+  // matches, and a sampler picks the sample.
   const bool any_sample = solver.sampling == SampleKind::kSpread;
-  scene.num_matches = any_sample ? solver.sample_size : 4 * solver.sample_size;
+  scene.num_matches = any_sample ? solver.sample_size : kSamplesPerPair * solver.sample_size;
   scene.noise_px = 0.0;
   scene.rotation_deg = options.rotation_deg;
   scene.motion = MotionPattern::kRandom;
@@ -94,14 +102,15 @@ std::vector<Problem> MakeProblems(const SolverInfo& solver, const SolverBenchmar
   scene.seed = options.seed;
   std::vector<Problem> problems;
   problems.reserve(options.trials);
-  for (int k = 0; static_cast<int>(problems.size()) < options.trials && k < 2 * options.trials;
+  for (int k = 0;
+       static_cast<int>(problems.size()) < options.trials && k < kTriesPerProblem * options.trials;
        ++k) {
     Problem problem;
     std::string error;
     Alignment alignment;
-    // A rig turned so that a large motion leaves nothing in view is no problem to solve.
+    // Fails for a rig whose cameras see nothing in common after a large motion.
     if (!MakeScenePair(scene, k, &problem.pair, &error)) continue;
-    // Its motion model is part of the prior: a circle, the chord at half the angle, forwards.
+    // Ackermann motion is on a circle, forwards: the chord is at half of the rotation angle.
     if (std::string_view(solver.name) == "2pt-ackermann") {
       Pose truth = *problem.pair.truth;
       truth.t = -(RotationY(DegToRad(0.5 * options.rotation_deg)) * Eigen::Vector3d::UnitZ());
@@ -126,15 +135,32 @@ std::vector<Problem> MakeProblems(const SolverInfo& solver, const SolverBenchmar
   return problems;
 }
 
-SolverBenchmarkRow BenchmarkRow(const SolverInfo& solver, const SolverBenchmarkOptions& options,
-                                bool inter) {
-  SolverBenchmarkRow row;
-  row.solver = solver.name;
-  row.matches = inter ? "inter" : "intra";
-  std::vector<Problem> problems = MakeProblems(solver, options, inter);
-  const int n = static_cast<int>(problems.size());
-  if (n == 0) return row;
+// How near the solutions of one problem come to the truth; infinite without a solution.
+struct NearestSolution {
+  double rotation = std::numeric_limits<double>::infinity();
+  double direction =
+      std::numeric_limits<double>::infinity();  // of the solution nearest in rotation
+  bool is_truth = false;  // one solution has both the rotation and the direction
+};
 
+NearestSolution FindNearest(const Pose& truth, const Solutions& solutions) {
+  NearestSolution nearest;
+  for (const Solution& solution : solutions) {
+    const double rotation = RotationError(truth.R, solution.R);
+    const double direction = TranslationDirectionError(truth.t, solution.t);
+    if (rotation < nearest.rotation) {
+      nearest.rotation = rotation;
+      nearest.direction = direction;
+    }
+    nearest.is_truth =
+        nearest.is_truth || (rotation < kFoundRotation && direction < kFoundDirection);
+  }
+  return nearest;
+}
+
+// Fills in what the solver finds.
+void MeasureSolutions(const SolverInfo& solver, const std::vector<Problem>& problems,
+                      bool rotation_is_zero, SolverBenchmarkRow* row) {
   Solutions solutions;
   std::vector<double> rotations, directions;
   int found_truth = 0, found_direction = 0, failures = 0;
@@ -143,50 +169,58 @@ SolverBenchmarkRow BenchmarkRow(const SolverInfo& solver, const SolverBenchmarkO
     solver.solve(problem.matches, problem.sample.data(), &solutions);
     num_solutions += solutions.size();
     failures += solutions.empty() ? 1 : 0;
-    double rotation = std::numeric_limits<double>::infinity();
-    double direction = std::numeric_limits<double>::infinity();
-    bool both = false;
-    for (const Solution& solution : solutions) {
-      const double r = RotationError(problem.pair.truth->R, solution.R);
-      const double d = TranslationDirectionError(problem.pair.truth->t, solution.t);
-      if (r < rotation) {
-        rotation = r;
-        direction = d;
-      }
-      both = both || (r < kFoundRotation && d < kFoundDirection);
-    }
-    found_truth += rotation < kFoundRotation ? 1 : 0;
-    found_direction += both ? 1 : 0;
-    if (std::isfinite(rotation)) rotations.push_back(RadToDeg(rotation));
-    if (std::isfinite(direction)) directions.push_back(RadToDeg(direction));
+    const NearestSolution nearest = FindNearest(*problem.pair.truth, solutions);
+    found_truth += nearest.rotation < kFoundRotation ? 1 : 0;
+    found_direction += nearest.is_truth ? 1 : 0;
+    if (std::isfinite(nearest.rotation)) rotations.push_back(RadToDeg(nearest.rotation));
+    if (std::isfinite(nearest.direction)) directions.push_back(RadToDeg(nearest.direction));
   }
-  row.solutions = num_solutions / n;
-  row.failures = failures / static_cast<double>(n);
-  row.found_direction = found_direction / static_cast<double>(n);
-  row.found_truth =
-      options.rotation_deg == 0.0 ? row.found_direction : found_truth / static_cast<double>(n);
-  if (const auto s = ComputeStatistics(rotations)) row.rotation_deg = s->median;
-  if (const auto s = ComputeStatistics(directions)) row.translation_dir_deg = s->median;
+  const auto n = static_cast<double>(problems.size());
+  row->solutions = num_solutions / n;
+  row->failures = failures / n;
+  row->found_direction = found_direction / n;
+  row->found_truth = rotation_is_zero ? row->found_direction : found_truth / n;
+  if (const auto s = ComputeStatistics(rotations)) row->rotation_deg = s->median;
+  if (const auto s = ComputeStatistics(directions)) row->translation_dir_deg = s->median;
+}
 
-  // Right before and after, as the clock of a shared machine changes.
+// Fills in the times.
+void MeasureTimes(const SolverInfo& solver, std::vector<Problem>* problems,
+                  SolverBenchmarkRow* row) {
+  const int n = static_cast<int>(problems->size());
+  Solutions solutions;
+  // The reference is timed right before and after, as the clock rate of a shared machine changes.
   const double reference_before = ReferenceKernelMicroseconds();
-  const std::vector<double> times = TimeBatches(
-      n, [&](int k) { solver.solve(problems[k].matches, problems[k].sample.data(), &solutions); });
+  const std::vector<double> times = TimeBatches(n, [&](int k) {
+    const Problem& problem = (*problems)[k];
+    solver.solve(problem.matches, problem.sample.data(), &solutions);
+  });
   if (const auto s = ComputeStatistics(times)) {
-    row.mean_us = s->mean;
-    row.median_us = s->median;
+    row->mean_us = s->mean;
+    row->median_us = s->median;
   }
-  row.spread_us = QuartileDistance(times);
+  row->spread_us = QuartileDistance(times);
   const double reference = 0.5 * (reference_before + ReferenceKernelMicroseconds());
-  if (reference > 0) row.ratio = row.median_us / reference;
+  if (reference > 0) row->ratio = row->median_us / reference;
 
   const std::vector<double> prepare = TimeBatches(n, [&](int k) {
-    problems[k].matches.Set(problems[k].pair.rig, problems[k].pair.matches,
-                            problems[k].matches.alignment());
+    Problem& problem = (*problems)[k];
+    problem.matches.Set(problem.pair.rig, problem.pair.matches, problem.matches.alignment());
   });
   if (const auto s = ComputeStatistics(prepare)) {
-    row.prepare_us = s->median / static_cast<double>(problems[0].pair.matches.size());
+    row->prepare_us = s->median / static_cast<double>(problems->front().pair.matches.size());
   }
+}
+
+SolverBenchmarkRow BenchmarkRow(const SolverInfo& solver, const SolverBenchmarkOptions& options,
+                                bool inter) {
+  SolverBenchmarkRow row;
+  row.solver = solver.name;
+  row.matches = inter ? "inter" : "intra";
+  std::vector<Problem> problems = MakeProblems(solver, options, inter);
+  if (problems.empty()) return row;
+  MeasureSolutions(solver, problems, options.rotation_deg == 0.0, &row);
+  MeasureTimes(solver, &problems, &row);
   return row;
 }
 
@@ -206,7 +240,7 @@ double ReferenceKernelMicroseconds() {
   const std::vector<double> times =
       TimeBatches(kProblems, [&](int k) { sum += matrices[k].partialPivLu().solve(right); });
   const auto statistics = ComputeStatistics(times);
-  // The sum is looked at, so that the work is not optimized away.
+  // The sum is used, so that the compiler does not remove the work.
   return statistics && std::isfinite(sum.sum()) ? statistics->median : 0.0;
 }
 

@@ -20,7 +20,7 @@ struct SolverBenchmarkOptions {
 
 // The truth counts as found if a solution's rotation is nearer than this, radians.
 inline constexpr double kFoundRotation = 1e-6;
-// At pure translation the rotation is found by anybody; the direction has to be, too, radians.
+// Radians. At pure translation every solver finds the rotation: the direction has to be found too.
 inline constexpr double kFoundDirection = 1e-4;
 
 struct SolverBenchmarkRow {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/metrics.h"
 #include "rigel/problems/io/csv.h"
 #include "rigel/problems/io/printable.h"
 #include "rigel/problems/io/report_json.h"
@@ -18,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 double AngleDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return RadToDeg(std::atan2(a.cross(b).norm(), a.dot(b)));
+  return RadToDeg(AngleBetween(a, b));
 }
 
 std::string VectorText(const Eigen::Vector3d& v) {
@@ -48,9 +49,7 @@ std::string Wrapped(const std::string& message) {
 
 Json VectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-void PutDeg(const char* key, double radians, Json* json) {
-  if (std::isfinite(radians) && radians >= 0) (*json)[key] = RadToDeg(radians);
-}
+void PutDeg(const char* key, double radians, Json* json) { PutKnown(key, RadToDeg(radians), json); }
 
 double TurnDeg(const Eigen::Matrix3d& C) { return RadToDeg(LogSO3(C).norm()); }
 
@@ -107,8 +106,7 @@ std::string CalibrationText(const CalibrationReport& report) {
 
 std::string CalibrationJson(const CalibrationReport& report) {
   Json json = NewReport("rigel-prior-calibration 1");
-  json["options"] = Json::object();
-  for (const auto& [name, value] : report.options) json["options"][name] = value;
+  json["options"] = OptionsJson(report.options);
   json["pairs"] = report.pairs;
   json["estimated"] = report.estimated;
   if (report.plane) {
@@ -134,10 +132,7 @@ std::string CalibrationJson(const CalibrationReport& report) {
     Json gravity = {{"level", CalibrationLevelName(g.level)}, {"pairs", g.pairs}};
     if (!g.message.empty()) gravity["message"] = g.message;
     if (g.level != CalibrationLevel::kNone) {
-      Pose pose;
-      pose.R = g.C;
-      const Eigen::Quaterniond q = pose.Quaternion();
-      gravity["q_wxyz"] = {q.w(), q.x(), q.y(), q.z()};
+      gravity["q_wxyz"] = QuaternionJson(g.C);
       gravity["change_deg"] = TurnDeg(g.C);
       PutDeg("tilt_sd_deg", g.tilt_sigma, &gravity);
       PutDeg("yaw_sd_deg", g.yaw_sigma, &gravity);

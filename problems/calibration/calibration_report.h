@@ -1,5 +1,5 @@
-// What rigel_calibrate_prior prints (format "rigel-prior-calibration 1", docs/formats.md), and the
-// header lines that a calibration gives.
+// The output of rigel_calibrate_prior (format "rigel-prior-calibration 1", docs/formats.md), and
+// the header lines of a calibration.
 #ifndef RIGEL_PROBLEMS_CALIBRATION_CALIBRATION_REPORT_H_
 #define RIGEL_PROBLEMS_CALIBRATION_CALIBRATION_REPORT_H_
 
@@ -7,7 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "rigel/problems/calibration/prior_calibration.h"
+#include "rigel/problems/calibration/gravity_calibration.h"
+#include "rigel/problems/calibration/plane_calibration.h"
 #include "rigel/problems/io/report_options.h"
 
 namespace rigel {
@@ -24,10 +25,10 @@ struct CalibrationReport {
 std::string CalibrationText(const CalibrationReport& report);
 std::string CalibrationJson(const CalibrationReport& report);
 
-// Lines by keyword, for ReplaceHeaderLines(). `normal` with its sigma, of the calibration and of
-// single motions, and `axis` have the plane's normal; an empty line takes out what stood there. A
-// normal whose roll is not determined has no sigma, nor has an axis: how far a rotation is about it
-// depends on how large it is.
+// Lines by keyword, for ReplaceHeaderLines(); an empty line removes the old one. `normal` and
+// `axis` are the normal of the plane. The sigma of `normal` is that of the calibration and of
+// single motions together. A normal whose roll is not determined has no sigma. An axis has none
+// either: how accurate it is depends on the angle of the rotation.
 std::map<std::string, std::string> PlaneLines(const PlaneCalibration& plane, bool normal,
                                               bool axis);
 
@@ -35,11 +36,11 @@ std::map<std::string, std::string> PlaneLines(const PlaneCalibration& plane, boo
 std::map<std::string, std::string> GravityLines(const GravityCalibration& gravity,
                                                 const MotionPrior& stated);
 
-// How the comment line begins that tells a file whose `line` (normal, axis, gravity) is calibrated.
-// Files calibrated and not look alike otherwise, and gravity must not be turned twice.
+// The beginning of the comment line that marks a file as calibrated; `line` is normal, axis or
+// gravity. Without the mark, gravity could be turned twice.
 std::string CalibrationMark(const std::string& line);
 
-// Those comment lines by their beginnings, for ReplaceHeaderLines(): of what is determined.
+// These comment lines by their beginnings, for ReplaceHeaderLines(), for what is determined.
 std::map<std::string, std::string> MarkLines(const CalibrationReport& report, bool normal,
                                              bool axis);
 

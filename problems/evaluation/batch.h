@@ -1,5 +1,5 @@
-// Many match files on several threads. Each file is a piece of work of its own: it is read, worked
-// on and forgotten, so that no more frame pairs are in memory than there are threads.
+// Many match files, processed on several threads. A thread reads a file, processes it and releases
+// it before the next, so that memory holds one frame pair a thread.
 #ifndef RIGEL_PROBLEMS_EVALUATION_BATCH_H_
 #define RIGEL_PROBLEMS_EVALUATION_BATCH_H_
 
@@ -17,17 +17,17 @@
 namespace rigel {
 
 // Reads a file, keeps the matches that options.use names and applies options.prior. `position` is
-// the place of the file among all of the input, whatever part of it this run reads: it fixes the
-// pair's random numbers. False with a message if that fails. `applied` may be null.
+// the index of the file in the whole input, also where a run reads only a part of it. It selects
+// the pair's random numbers. False with a message if that fails. `applied` may be null.
 bool LoadPair(const ComparisonOptions& options, const std::string& path, int position,
               FramePair* pair, std::string* error, AppliedAxes* applied = nullptr);
 
-// What is left of one file.
+// The result of one file.
 template <class Result>
 struct BatchItem {
-  int position = 0;   // among all of the input
-  std::string error;  // not empty: it could not be read or worked on, and there is nothing else
-  FramePair pair;     // without rig and matches; has a name where it was read, whatever the error
+  int position = 0;   // in the whole input
+  std::string error;  // not empty: reading or work() failed, and there is no result
+  FramePair pair;     // without rig and matches; has a name if the file was read
   AppliedAxes axes;
   Result result{};
 };
@@ -44,7 +44,7 @@ std::vector<BatchItem<Result>> RunBatch(const ComparisonOptions& options,
   ParallelFor(static_cast<int>(paths.size()), options.num_threads, [&](int k) {
     BatchItem<Result>& item = items[k];
     item.position = first + k;
-    // One file that there is no memory for is no reason to lose the others.
+    // If memory is not enough for one file, the others still get their results.
     try {
       if (LoadPair(options, paths[k], item.position, &item.pair, &item.error, &item.axes)) {
         item.result = work(item.pair);
@@ -65,8 +65,7 @@ struct FileComparison {
   std::vector<FramePair> pairs;        // those compared, in order, without rig and matches
   std::vector<SolverResults> solvers;  // results for each of `pairs`
   std::vector<AppliedAxes> axes;       // of their priors
-  // Why the other files are not among them, in order: they could not be read or worked on; they
-  // have no truth line, which is needed.
+  // Messages for the other files, in order: those that failed, and those without a truth line.
   std::vector<std::string> errors, without_truth;
 };
 

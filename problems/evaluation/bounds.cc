@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
@@ -10,9 +9,10 @@
 #include "rigel/problems/evaluation/summary_json.h"
 #include "rigel/problems/io/json_message.h"
 #include "rigel/problems/io/json_text.h"
-#include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/match_file_words.h"
+#include "rigel/problems/io/parse_number.h"
 #include "rigel/problems/io/printable.h"
+#include "rigel/problems/io/table.h"
 #include "rigel/refine/solver_choice.h"
 
 namespace rigel {
@@ -20,9 +20,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Errors of noise-free files are rounding, of which no fraction means anything: degrees, and the
-// fraction of a scale.
-constexpr double kRounding = 1e-9;
+// Degrees, and fraction of a scale. Errors of noise-free files are rounding: a fraction of them is
+// no bound.
+constexpr double kErrorRounding = 1e-9;
 
 // The number at a path like "refined.rotation_deg.median"; none if there is none.
 std::optional<double> NumberAt(const Json& entry, std::string_view path) {
@@ -38,7 +38,7 @@ std::optional<double> NumberAt(const Json& entry, std::string_view path) {
   return place->is_number() ? std::optional<double>(place->get<double>()) : std::nullopt;
 }
 
-// An entry with all that a report may say of a solver.
+// An entry with every statistic that a report may have.
 Json CompleteEntry() {
   SolverSummary s;
   s.raw_rotation_deg = s.raw_direction_deg = s.raw_scale = Statistics();
@@ -49,15 +49,9 @@ Json CompleteEntry() {
   return SummaryJson(s);
 }
 
-std::string Text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6g", value);
-  return text;
-}
-
 // "4pt-axis", "4pt-axis, sequence 06".
-std::string NameOf(const SolverSummary& entry) {
-  // Of a message's part: names in a report that somebody else wrote may be of any length.
+std::string EntryName(const SolverSummary& entry) {
+  // Bytes of the name in a message: a name in a foreign report may have any length.
   constexpr size_t kMaxBytes = 60;
   std::string name = entry.solver;
   if (entry.sequence != "all") name += ", sequence " + entry.sequence;
@@ -75,19 +69,19 @@ const SolverSummary* FindEntry(const std::vector<SolverSummary>& entries, const 
 
 void CheckStatistic(const StatisticBound& bound, const SolverSummary& entry,
                     std::vector<std::string>* missed) {
-  const std::string what = "--fail_above: " + NameOf(entry) + ": " + bound.statistic + " is ";
+  const std::string what = "--fail_above: " + EntryName(entry) + ": " + bound.statistic + " is ";
   const std::optional<double> value = NumberAt(SummaryJson(entry), bound.statistic);
   if (!value) {
-    missed->push_back(what + "missing, the bound is " + Text(bound.limit));
+    missed->push_back(what + "missing, the bound is " + FormatShort(bound.limit));
   } else if (!(*value <= bound.limit)) {
-    missed->push_back(what + Text(*value) + ", above " + Text(bound.limit));
+    missed->push_back(what + FormatShort(*value) + ", above " + FormatShort(bound.limit));
   }
 }
 
 // One entry of the baseline against that of the same solver and sequence.
 void CheckEntry(const SolverSummary& before, const SolverSummary& now, double tolerance,
                 std::vector<std::string>* missed) {
-  const std::string name = "--baseline: " + NameOf(before) + ": ";
+  const std::string name = "--baseline: " + EntryName(before) + ": ";
   if (now.pairs != before.pairs) {
     missed->push_back(name + "pairs is " + std::to_string(now.pairs) + ", it was " +
                       std::to_string(before.pairs));
@@ -100,10 +94,10 @@ void CheckEntry(const SolverSummary& before, const SolverSummary& now, double to
     const std::optional<double> value = NumberAt(entry, path);
     const double limit = *was * (1.0 + tolerance) + slack;
     if (!value) {
-      missed->push_back(name + path + " is missing, it was " + Text(*was));
+      missed->push_back(name + path + " is missing, it was " + FormatShort(*was));
     } else if (!(*value <= limit)) {
-      missed->push_back(name + path + " is " + Text(*value) + ", above " + Text(limit) +
-                        "; it was " + Text(*was));
+      missed->push_back(name + path + " is " + FormatShort(*value) + ", above " +
+                        FormatShort(limit) + "; it was " + FormatShort(*was));
     }
   };
   check("failures", 0.0);
@@ -111,14 +105,14 @@ void CheckEntry(const SolverSummary& before, const SolverSummary& now, double to
   if (earlier.contains(group)) {
     for (const auto& [quantity, statistics] : earlier.at(group).items()) {
       for (const auto& [statistic, ignored] : statistics.items()) {
-        check(group + "." + quantity + "." + statistic, kRounding);
+        check(group + "." + quantity + "." + statistic, kErrorRounding);
       }
     }
   }
   const double least = before.direction_pairs * (1.0 - tolerance);
   if (now.direction_pairs < least) {
     missed->push_back(name + "direction_pairs is " + std::to_string(now.direction_pairs) +
-                      ", below " + Text(least) + "; it was " +
+                      ", below " + FormatShort(least) + "; it was " +
                       std::to_string(before.direction_pairs));
   }
 }
@@ -135,11 +129,10 @@ bool ParseStatisticBounds(std::string_view text, std::vector<StatisticBound>* bo
     const std::string_view item = text.substr(0, comma);
     text.remove_prefix(std::min(comma + 1, text.size()));
     if (item.empty()) continue;
-    const std::string quoted = "'" + PrintablePath(std::string(item)) + "'";
+    const std::string quoted = "'" + Printable(std::string(item)) + "'";
     const size_t colon = item.rfind(':');
     StatisticBound bound;
-    if (colon == std::string_view::npos ||
-        !match_file::ParseNumber(item.substr(colon + 1), &bound.limit)) {
+    if (colon == std::string_view::npos || !ParseFinite(item.substr(colon + 1), &bound.limit)) {
       *error = quoted + ": expected STATISTIC:LIMIT, as in refined.rotation_deg.median:0.03";
       return false;
     }
@@ -164,7 +157,7 @@ bool ParseStatisticBounds(std::string_view text, std::vector<StatisticBound>* bo
     parsed.push_back(std::move(bound));
   }
   if (parsed.empty() && !all.empty()) {
-    *error = "no bound in '" + PrintablePath(std::string(all)) + "'";
+    *error = "no bound in '" + Printable(std::string(all)) + "', expected STATISTIC:LIMIT,...";
     return false;
   }
   *bounds = std::move(parsed);
@@ -184,7 +177,7 @@ bool ParseBaseline(std::string_view text, const std::string& name,
     *baseline = std::move(entries);
     return true;
   } catch (const std::exception& e) {
-    *error = PrintablePath(name + ": not a report of rigel_compare: " + JsonMessage(e));
+    *error = Printable(name + ": not a report of rigel_compare: " + JsonMessage(e));
     return false;
   }
 }
@@ -210,7 +203,7 @@ std::vector<std::string> MissedBounds(const ReportBounds& bounds,
     if (!bounds.max_failures || entry.sequence != "all" || entry.failures <= *bounds.max_failures) {
       continue;
     }
-    missed.push_back("--max_failures: " + NameOf(entry) + ": failures is " +
+    missed.push_back("--max_failures: " + EntryName(entry) + ": failures is " +
                      std::to_string(entry.failures) + ", above " +
                      std::to_string(*bounds.max_failures));
   }
@@ -219,7 +212,7 @@ std::vector<std::string> MissedBounds(const ReportBounds& bounds,
     if (now != nullptr) {
       CheckEntry(before, *now, bounds.tolerance, &missed);
     } else {
-      missed.push_back("--baseline: " + NameOf(before) + ": is missing, it was there");
+      missed.push_back("--baseline: " + EntryName(before) + ": is missing, it was there");
     }
   }
   return missed;

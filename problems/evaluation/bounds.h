@@ -1,5 +1,5 @@
-// Bounds on the statistics of a report of rigel_compare: what makes a regression test of recordings
-// (docs/regression.md).
+// Bounds on the statistics of a report of rigel_compare. They turn recordings into a regression
+// test (docs/regression.md).
 #ifndef RIGEL_PROBLEMS_EVALUATION_BOUNDS_H_
 #define RIGEL_PROBLEMS_EVALUATION_BOUNDS_H_
 
@@ -22,9 +22,11 @@ struct StatisticBound {
 struct ReportBounds {
   std::vector<StatisticBound> statistics;
   std::optional<int> max_failures;  // of each solver
-  // Entries of an earlier report. Of each the refined errors (where there are none, the raw ones)
-  // and the failures may not be exceeded by more than `tolerance`, a fraction; directions may not
-  // be observable in fewer pairs by more than that, and the number of pairs is the same.
+  // Entries of an earlier report, each a bound on the entry of the same solver and sequence:
+  //   - the number of pairs is the same;
+  //   - failures and refined errors (raw errors where there are no refined ones) exceed the earlier
+  //     ones by at most `tolerance`, a fraction;
+  //   - the number of pairs with an observable direction falls by at most `tolerance`.
   std::vector<SolverSummary> baseline;
   double tolerance = 0.0;
 };
@@ -39,8 +41,8 @@ bool ParseStatisticBounds(std::string_view text, std::vector<StatisticBound>* bo
 bool ParseBaseline(std::string_view text, const std::string& name,
                    std::vector<SolverSummary>* baseline, std::string* error);
 
-// One line for each bound that `summaries`, those of all sequences among them, do not keep: a
-// statistic that is missing keeps none.
+// One line for each bound that `summaries` miss. They include the summaries over all sequences. A
+// missing statistic misses its bound.
 std::vector<std::string> MissedBounds(const ReportBounds& bounds,
                                       const std::vector<SolverSummary>& summaries);
 

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/enum_names.h"
 #include "rigel/core/metrics.h"
 #include "rigel/core/parallel.h"
 #include "rigel/core/rig_centre.h"
@@ -16,6 +17,9 @@
 
 namespace rigel {
 namespace {
+
+constexpr EnumName<MatchUse> kMatchUseNames[] = {
+    {MatchUse::kAll, "all"}, {MatchUse::kIntra, "intra"}, {MatchUse::kInter, "inter"}};
 
 MotionErrors ErrorsOf(const Pose& truth, const Pose& pose, bool direction_means, bool scale_means) {
   MotionErrors errors;
@@ -37,12 +41,12 @@ double ChiSquareQuantileRatio(double dof, double z) {
   return root * root * root;
 }
 
-// Only of the forms that take nothing as exact: the others' covariance leaves something out.
+// Only for the forms that take nothing as exact: the covariance of the others is not complete.
 void FillNees(const Pose& truth, const MotionEstimate& estimate, RefineForm form,
               PairResult* result) {
   const bool complete = form == RefineForm::kFull || form == RefineForm::kBundle;
   if (!complete || !estimate.refine.covariance || !estimate.refine.translation_observable) return;
-  // Of the motion that was fitted: its length is what may have been held.
+  // For the motion of the fitted point: its length may have been held fixed.
   const Eigen::Vector3d& point = estimate.refine.fitted_point;
   const Pose fitted = MotionOfPoint(estimate.pose, point);
   const Eigen::Vector3d true_b = MotionOfPoint(truth, point).t;
@@ -61,16 +65,100 @@ void FillNees(const Pose& truth, const MotionEstimate& estimate, RefineForm form
   result->nees_dof = static_cast<int>(basis.cols());
 }
 
+struct ErrorValues {
+  std::vector<double> rotation_deg, direction_deg, scale;
+
+  void Add(const std::optional<MotionErrors>& errors) {
+    if (!errors) return;
+    rotation_deg.push_back(RadToDeg(errors->rotation));
+    if (errors->direction) direction_deg.push_back(RadToDeg(*errors->direction));
+    if (errors->scale) scale.push_back(*errors->scale);
+  }
+};
+
+// The values of the pairs that a solver solved, for the statistics of a summary.
+class SummaryValues {
+ public:
+  void Add(const PairResult& result) {
+    raw_.Add(result.raw);
+    refined_.Add(result.refined);
+    AddBound(result);
+    if (result.nees) {
+      nees_ += *result.nees;
+      nees_dof_ += result.nees_dof;
+      ++nees_pairs_;
+    }
+    inlier_ratio_.push_back(result.inlier_ratio);
+    iterations_.push_back(result.iterations);
+    if (result.ransac_ms) ransac_ms_.push_back(*result.ransac_ms);
+    if (result.refine_ms) refine_ms_.push_back(*result.refine_ms);
+  }
+
+  // `solved` pairs were added.
+  void Fill(size_t solved, SolverSummary* summary) const {
+    // A statistic over less than half of the pairs would describe a selection.
+    const auto in_most = [&](const std::vector<double>& values) {
+      return 2 * values.size() > solved ? ComputeStatistics(values) : std::nullopt;
+    };
+    summary->raw_rotation_deg = ComputeStatistics(raw_.rotation_deg);
+    summary->raw_direction_deg = in_most(raw_.direction_deg);
+    summary->raw_scale = in_most(raw_.scale);
+    summary->refined_rotation_deg = ComputeStatistics(refined_.rotation_deg);
+    summary->refined_direction_deg = in_most(refined_.direction_deg);
+    summary->refined_scale = in_most(refined_.scale);
+    if (summary->raw_direction_deg) {
+      summary->direction_pairs = static_cast<int>(raw_.direction_deg.size());
+    }
+    if (bound_rotation_deg_.size() == solved) {
+      summary->bound_rotation_deg = ComputeStatistics(bound_rotation_deg_);
+      summary->bound_direction_deg = in_most(bound_direction_deg_);
+    }
+    if (2 * static_cast<size_t>(nees_pairs_) > solved) FillNeesRatio(summary);
+    summary->inlier_ratio = ComputeStatistics(inlier_ratio_);
+    summary->iterations = ComputeStatistics(iterations_);
+    if (ransac_ms_.size() == solved) summary->ransac_ms = ComputeStatistics(ransac_ms_);
+    if (refine_ms_.size() == solved) summary->refine_ms = ComputeStatistics(refine_ms_);
+  }
+
+ private:
+  void AddBound(const PairResult& result) {
+    if (!result.bound) return;
+    bound_rotation_deg_.push_back(RadToDeg(result.bound->rotation));
+    // Only of pairs that have a direction error to compare it with.
+    if (result.bound->direction && result.refined && result.refined->direction) {
+      bound_direction_deg_.push_back(RadToDeg(*result.bound->direction));
+    }
+  }
+
+  void FillNeesRatio(SolverSummary* summary) const {
+    constexpr double kHalfPercent = 2.5758;  // of the normal distribution is beyond
+    summary->nees_ratio = nees_ / nees_dof_;
+    summary->nees_dof = nees_dof_ / nees_pairs_;
+    summary->nees_low = ChiSquareQuantileRatio(nees_dof_, -kHalfPercent);
+    summary->nees_high = ChiSquareQuantileRatio(nees_dof_, kHalfPercent);
+  }
+
+  ErrorValues raw_, refined_;
+  std::vector<double> bound_rotation_deg_, bound_direction_deg_;
+  std::vector<double> inlier_ratio_, iterations_, ransac_ms_, refine_ms_;
+  double nees_ = 0.0, nees_dof_ = 0.0;
+  int nees_pairs_ = 0;
+};
+
 }  // namespace
+
+EstimateOptions WithStatedNoise(EstimateOptions options, const FramePair& pair) {
+  if (pair.noise_px) options.refine.noise_px = pair.noise_px;
+  return options;
+}
 
 PairResult ComparePair(const FramePair& pair, const EstimateOptions& options,
                        bool use_stated_noise) {
   PairResult result;
   result.name = pair.name;
   result.sequence = pair.sequence;
-  EstimateOptions pair_options = options;
-  if (use_stated_noise && pair.noise_px.has_value()) pair_options.refine.noise_px = pair.noise_px;
-  const MotionEstimate estimate = EstimateMotion(pair_options, pair);
+  const MotionEstimate estimate =
+      EstimateMotion(use_stated_noise ? WithStatedNoise(options, pair) : options, pair);
   result.status = estimate.status;
   result.message = estimate.message;
   result.inlier_ratio = estimate.inlier_ratio;
@@ -103,16 +191,7 @@ PairResult ComparePair(const FramePair& pair, const EstimateOptions& options,
 }
 
 bool ParseMatchUse(std::string_view name, MatchUse* use) {
-  if (name == "all") {
-    *use = MatchUse::kAll;
-  } else if (name == "intra") {
-    *use = MatchUse::kIntra;
-  } else if (name == "inter") {
-    *use = MatchUse::kInter;
-  } else {
-    return false;
-  }
-  return true;
+  return FindValue(kMatchUseNames, name, use);
 }
 
 void SelectMatches(MatchUse use, FramePair* pair) {
@@ -144,69 +223,16 @@ SolverSummary Summarize(const std::string& solver, const std::string& sequence,
   SolverSummary summary;
   summary.solver = solver;
   summary.sequence = sequence;
-  std::vector<double> rotation[2], direction[2], scale[2];
-  std::vector<double> bound_rotation, bound_direction;
-  std::vector<double> inlier_ratio, iterations, ransac_ms, refine_ms;
-  double nees = 0.0, nees_dof = 0.0;
-  int nees_pairs = 0;
+  SummaryValues values;
   for (const PairResult& result : results) {
     ++summary.pairs;
     if (result.failed) {
       ++summary.failures;
-      continue;
+    } else {
+      values.Add(result);
     }
-    const std::optional<MotionErrors>* errors[2] = {&result.raw, &result.refined};
-    for (int k = 0; k < 2; ++k) {
-      if (!errors[k]->has_value()) continue;
-      const MotionErrors& e = **errors[k];
-      rotation[k].push_back(RadToDeg(e.rotation));
-      if (e.direction) direction[k].push_back(RadToDeg(*e.direction));
-      if (e.scale) scale[k].push_back(*e.scale);
-    }
-    if (result.bound) {
-      bound_rotation.push_back(RadToDeg(result.bound->rotation));
-      // Of the pairs whose errors it is held against.
-      if (result.bound->direction && result.refined && result.refined->direction) {
-        bound_direction.push_back(RadToDeg(*result.bound->direction));
-      }
-    }
-    if (result.nees) {
-      nees += *result.nees;
-      nees_dof += result.nees_dof;
-      ++nees_pairs;
-    }
-    inlier_ratio.push_back(result.inlier_ratio);
-    iterations.push_back(result.iterations);
-    if (result.ransac_ms) ransac_ms.push_back(*result.ransac_ms);
-    if (result.refine_ms) refine_ms.push_back(*result.refine_ms);
   }
-  const size_t solved = static_cast<size_t>(summary.pairs - summary.failures);
-  // A statistic over less than half of the pairs would speak of a selection.
-  const auto in_most = [&](const std::vector<double>& values) {
-    return 2 * values.size() > solved ? ComputeStatistics(values) : std::nullopt;
-  };
-  summary.raw_rotation_deg = ComputeStatistics(rotation[0]);
-  summary.raw_direction_deg = in_most(direction[0]);
-  summary.raw_scale = in_most(scale[0]);
-  summary.refined_rotation_deg = ComputeStatistics(rotation[1]);
-  summary.refined_direction_deg = in_most(direction[1]);
-  summary.refined_scale = in_most(scale[1]);
-  if (summary.raw_direction_deg) summary.direction_pairs = static_cast<int>(direction[0].size());
-  if (bound_rotation.size() == solved) {
-    summary.bound_rotation_deg = ComputeStatistics(bound_rotation);
-    summary.bound_direction_deg = in_most(bound_direction);
-  }
-  if (2 * static_cast<size_t>(nees_pairs) > solved) {
-    constexpr double kHalfPercent = 2.5758;  // of the normal distribution is beyond
-    summary.nees_ratio = nees / nees_dof;
-    summary.nees_dof = nees_dof / nees_pairs;
-    summary.nees_low = ChiSquareQuantileRatio(nees_dof, -kHalfPercent);
-    summary.nees_high = ChiSquareQuantileRatio(nees_dof, kHalfPercent);
-  }
-  summary.inlier_ratio = ComputeStatistics(inlier_ratio);
-  summary.iterations = ComputeStatistics(iterations);
-  if (ransac_ms.size() == solved) summary.ransac_ms = ComputeStatistics(ransac_ms);
-  if (refine_ms.size() == solved) summary.refine_ms = ComputeStatistics(refine_ms);
+  values.Fill(static_cast<size_t>(summary.pairs - summary.failures), &summary);
   return summary;
 }
 

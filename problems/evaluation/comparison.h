@@ -22,8 +22,8 @@ bool ParseMatchUse(std::string_view name, MatchUse* use);  // "all", "intra", "i
 // Keeps the matches of that kind.
 void SelectMatches(MatchUse use, FramePair* pair);
 
-// Without a refinement nothing measures what the matches determine; that the scale is known can
-// then be said only where there are matches between cameras (docs/conventions.md).
+// True if any match is between two cameras. Without a refinement this is the only sign that the
+// scale is observable (docs/conventions.md).
 bool HasInterCameraMatches(const FramePair& pair);
 
 struct ComparisonOptions {
@@ -35,16 +35,18 @@ struct ComparisonOptions {
   int num_threads = 1;
 };
 
-// One motion against the truth. An error that does not exist is left out: the direction where the
-// truth or the estimate has none that means something, the scale where it is not observable or,
-// without a refinement, where no match is between cameras.
+// Errors of one motion. An error that does not exist is left out:
+//   - of the direction, where the true translation is too short (kMinTrueTranslation) or the
+//     direction is not observable;
+//   - of the scale, where it is not observable; without a refinement, where no match is between two
+//     cameras.
 struct MotionErrors {
   double rotation = 0.0;  // radians
   std::optional<double> direction;
   std::optional<double> scale;  // fraction
 };
 
-// The part of a CramerRaoBound that reports give.
+// The part of a CramerRaoBound that reports show.
 struct MotionBound {
   double rotation = 0.0;            // radians
   std::optional<double> direction;  // none where the true motion has none
@@ -57,8 +59,8 @@ struct PairResult {
   std::string message;
   std::optional<MotionErrors> raw, refined;
   std::optional<MotionBound> bound;
-  // Normalized estimation error squared: the refined error in units of its stated covariance. Its
-  // mean over many pairs is the degrees of freedom if the covariance is right.
+  // Normalized estimation error squared (NEES): the refined error, weighted by the inverse of its
+  // covariance. If the covariance is right, the mean over many pairs is nees_dof.
   std::optional<double> nees;
   int nees_dof = 0;  // 6, or 5 where |t| was held
   double inlier_ratio = 0.0;
@@ -66,20 +68,24 @@ struct PairResult {
   std::string doubt;                           // MotionEstimate::doubt; empty if there is none
   std::optional<double> ransac_ms, refine_ms;  // none where times are left out
 
-  // No estimate, or one that could not be refined where that was asked for.
+  // No estimate, or no refined one where a refinement was requested.
   bool failed = true;
 };
 
-// Below this the true motion has no direction that an estimate could be held to, metres.
+// Metres. The direction of a shorter true translation is not compared: errors of the truth exceed
+// it.
 inline constexpr double kMinTrueTranslation = 1e-2;
 
-// Runs one solver on a pair (already selected and with its prior applied). The noise that the pair
-// states is the refinement's, unless `use_stated_noise` is false.
+// The options for one pair: the noise that the pair states, if any, is the refinement's.
+EstimateOptions WithStatedNoise(EstimateOptions options, const FramePair& pair);
+
+// Runs one solver on a pair whose matches are selected and whose prior is applied. Options are
+// those of WithStatedNoise() if `use_stated_noise`.
 PairResult ComparePair(const FramePair& pair, const EstimateOptions& options,
                        bool use_stated_noise);
 
-// The same for all of `pairs`. Results in input order and the same for any number of threads, but
-// for the times. `progress` (may be empty) is called after each pair, from any thread.
+// The same for all `pairs`, in input order. Apart from the times, results do not depend on the
+// number of threads. `progress` (may be empty) is called after each pair, from any thread.
 std::vector<PairResult> RunSolver(const std::vector<FramePair>& pairs,
                                   const EstimateOptions& options, int num_threads,
                                   const std::function<void()>& progress,
@@ -90,7 +96,7 @@ struct SolverResults {
   std::vector<PairResult> pairs;
 };
 
-// What a report says of one solver over a group of pairs (docs/formats.md).
+// Statistics of one solver over a group of pairs (docs/formats.md).
 struct SolverSummary {
   std::string solver;
   std::string sequence = "all";
@@ -100,8 +106,8 @@ struct SolverSummary {
   std::optional<Statistics> raw_rotation_deg, raw_direction_deg, raw_scale;
   std::optional<Statistics> refined_rotation_deg, refined_direction_deg, refined_scale;
   std::optional<Statistics> bound_rotation_deg, bound_direction_deg;
-  // Mean NEES over mean degrees of freedom, and the 99 percent interval of that ratio for a right
-  // covariance.
+  // Mean NEES over mean degrees of freedom, and the 99 percent interval of this ratio if the
+  // covariance is right.
   std::optional<double> nees_ratio;
   double nees_dof = 0.0, nees_low = 0.0, nees_high = 0.0;
   std::optional<Statistics> inlier_ratio, iterations, ransac_ms, refine_ms;

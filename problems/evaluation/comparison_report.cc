@@ -1,8 +1,8 @@
-// Tables, JSON and CSV of rigel_compare.
+#include "rigel/problems/evaluation/comparison_report.h"
+
 #include <nlohmann/json.hpp>
 
 #include "rigel/core/angles.h"
-#include "rigel/problems/evaluation/report.h"
 #include "rigel/problems/evaluation/sequence_tables.h"
 #include "rigel/problems/evaluation/summary_json.h"
 #include "rigel/problems/io/csv.h"
@@ -14,16 +14,6 @@ namespace rigel {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::optional<double> MedianOf(const std::optional<Statistics>& s) {
-  return s ? std::optional<double>(s->median) : std::nullopt;
-}
-
-std::optional<double> Ratio(const std::optional<Statistics>& error,
-                            const std::optional<Statistics>& bound) {
-  if (!error || !bound || !(bound->rms > 0)) return std::nullopt;
-  return error->rms / bound->rms;
-}
 
 Json ErrorsJson(const MotionErrors& errors) {
   Json object = {{"rotation_deg", RadToDeg(errors.rotation)}};
@@ -62,6 +52,28 @@ Json PairJson(const ComparisonReport& report, size_t k) {
   return object;
 }
 
+std::string CsvDegrees(std::optional<double> radians) {
+  return radians ? CsvNumber(RadToDeg(*radians)) : "";
+}
+
+std::string CsvOptional(std::optional<double> value) { return value ? CsvNumber(*value) : ""; }
+
+// ",rotation,direction,scale"; the cells of what there is not are empty.
+std::string CsvErrors(const std::optional<MotionErrors>& errors) {
+  if (!errors) return ",,,";
+  return "," + CsvDegrees(errors->rotation) + "," + CsvDegrees(errors->direction) + "," +
+         CsvOptional(errors->scale);
+}
+
+std::string CsvRow(const std::string& solver, const PairResult& r) {
+  const std::string bound =
+      r.bound ? "," + CsvDegrees(r.bound->rotation) + "," + CsvDegrees(r.bound->direction) : ",,";
+  return CsvText(r.name) + "," + CsvText(r.sequence) + "," + solver + "," +
+         CsvText(EstimateStatusName(r.status)) + CsvErrors(r.raw) + CsvErrors(r.refined) + bound +
+         "," + CsvNumber(r.inlier_ratio) + "," + std::to_string(r.iterations) + "," +
+         CsvOptional(r.ransac_ms) + "," + CsvOptional(r.refine_ms) + "\n";
+}
+
 std::string SolverTable(const std::vector<SolverSummary>& summaries) {
   // A blank before the first column of each group. The widths given keep it to 100 columns with the
   // longest solver name.
@@ -94,8 +106,8 @@ std::string SolverTable(const std::vector<SolverSummary>& summaries) {
                           "NEES / dof", "dof", "99 % of right ones"});
     for (const SolverSummary& s : summaries) {
       efficiency.AddRow(
-          {s.solver, FormatNumber(Ratio(s.refined_rotation_deg, s.bound_rotation_deg), 3),
-           FormatNumber(Ratio(s.refined_direction_deg, s.bound_direction_deg), 3),
+          {s.solver, FormatNumber(Efficiency(s.refined_rotation_deg, s.bound_rotation_deg), 3),
+           FormatNumber(Efficiency(s.refined_direction_deg, s.bound_direction_deg), 3),
            FormatNumber(s.nees_ratio, 3), s.nees_ratio ? FormatNumber(s.nees_dof, 2) : "-",
            s.nees_ratio ? FormatNumber(s.nees_low, 2) + " to " + FormatNumber(s.nees_high, 2)
                         : "-"});
@@ -108,7 +120,7 @@ std::string SolverTable(const std::vector<SolverSummary>& summaries) {
 }  // namespace
 
 std::string ComparisonTable(const std::vector<SolverSummary>& summaries) {
-  // Of "all", which is there of each solver; sequences have tables of their own.
+  // Only the summaries over all sequences: sequences have tables of their own.
   std::vector<SolverSummary> all;
   for (const SolverSummary& s : summaries) {
     if (s.sequence == "all") all.push_back(s);
@@ -131,13 +143,12 @@ std::string ComparisonJson(const ComparisonReport& report,
                      {"count", report.shard->count},
                      {"files", report.num_files}};
   }
-  json["options"] = Json::object();
-  for (const auto& [name, value] : report.options) json["options"][name] = value;
+  json["options"] = OptionsJson(report.options);
   json["results"] = Json::array();
   for (const SolverSummary& s : summaries) json["results"].push_back(SummaryJson(s));
   std::string text = JsonText(json, 2);
   if (per_pair) {
-    // Written line by line: there may be many, and a tree of them would be large.
+    // Written line by line: a JSON tree of many pairs would be large.
     text.resize(text.size() - 2);  // the line break and bracket of the end
     text += ",\n  \"pair_results\": [";
     for (size_t k = 0; k < report.solvers.front().pairs.size(); ++k) {
@@ -154,25 +165,8 @@ std::string ComparisonCsv(const std::vector<SolverResults>& solvers) {
       "pair,sequence,solver,status,raw_rotation_deg,raw_translation_dir_deg,raw_scale,"
       "refined_rotation_deg,refined_translation_dir_deg,refined_scale,bound_rotation_deg,"
       "bound_translation_dir_deg,inlier_ratio,iterations,ransac_ms,refine_ms\n";
-  const auto degrees = [](std::optional<double> radians) {
-    return radians ? CsvNumber(RadToDeg(*radians)) : std::string();
-  };
-  const auto time = [](std::optional<double> ms) { return ms ? CsvNumber(*ms) : std::string(); };
   for (const auto& [solver, pairs] : solvers) {
-    for (const PairResult& r : pairs) {
-      text += CsvText(r.name) + "," + CsvText(r.sequence) + "," + solver + "," +
-              CsvText(EstimateStatusName(r.status));
-      for (const std::optional<MotionErrors>* errors : {&r.raw, &r.refined}) {
-        const bool has = errors->has_value();
-        text += "," + (has ? degrees((*errors)->rotation) : "");
-        text += "," + (has ? degrees((*errors)->direction) : "");
-        text += "," + (has && (*errors)->scale ? CsvNumber(*(*errors)->scale) : "");
-      }
-      text += "," + (r.bound ? degrees(r.bound->rotation) : "");
-      text += "," + (r.bound ? degrees(r.bound->direction) : "");
-      text += "," + CsvNumber(r.inlier_ratio) + "," + std::to_string(r.iterations) + "," +
-              time(r.ransac_ms) + "," + time(r.refine_ms) + "\n";
-    }
+    for (const PairResult& r : pairs) text += CsvRow(solver, r);
   }
   return text;
 }

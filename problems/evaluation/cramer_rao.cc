@@ -16,6 +16,10 @@
 namespace rigel {
 namespace {
 
+// Pixels: the step of the central differences. Its rounding and its curvature error are both far
+// below the noise.
+constexpr double kStepPx = 1e-2;
+
 using Jacobians = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 Jacobians SampsonJacobians(const GroupedMatches& matches, const Pose& pose) {
@@ -30,12 +34,12 @@ Jacobians SampsonJacobians(const GroupedMatches& matches, const Pose& pose) {
   return J;
 }
 
-// J'J / sigma^2 as it would be at the exact pixels. At the measured ones noise n adds to it, in the
-// mean, sigma^2 times the square of dJ/dn (2 to 5 percent of the information with forward motion,
-// where flow is short); that is taken away again.
+// J'J / sigma^2 at the exact pixels. At the measured pixels the noise n adds sigma^2 times the
+// square of dJ/dn in the mean: 2 to 5 percent of the information with forward motion, where flow is
+// short. This excess is subtracted.
 Matrix6d NoiseFreeInformation(double noise_px, const GroupedMatches& matches,
                               const std::vector<char>& mask, const Pose& pose) {
-  const double step_px = 1e-2 * PixelUnit(matches.rig());  // pixels
+  const double step_px = kStepPx * PixelUnit(matches.rig());
   const double variance = noise_px * noise_px;
   const auto square = [&](const Jacobians& J) {
     Matrix6d sum = Matrix6d::Zero();
@@ -57,7 +61,8 @@ Matrix6d NoiseFreeInformation(double noise_px, const GroupedMatches& matches,
     };
     excess += square((moved(step_px) - moved(-step_px)) / (2.0 * step_px));
   }
-  // To second order; where the noise is so large that this fails, the plain value is nearer.
+  // This holds to second order. Where the noise is too large for it, the uncorrected value is
+  // nearer.
   const Matrix6d corrected = information - excess;
   const Eigen::LLT<Eigen::Matrix<double, 6, 6>> positive(corrected - 0.5 * information);
   return positive.info() == Eigen::Success ? corrected : information;
@@ -77,7 +82,7 @@ std::optional<CramerRaoBound> ComputeCramerRaoBound(const RefineOptions& options
   const GroupedMatches matches(WithOrigin(pair.rig, point), pair.matches);
   std::vector<double> errors;
   std::vector<char> mask;
-  // An outlier that fits the truth by chance is no information.
+  // The gate of the refinement: an outlier that fits the truth by chance gives no information.
   const double gate =
       std::max(ThresholdPx(options.threshold_px, pair.rig), kGateSigmas * *pair.noise_px);
   const bool prior_exact =

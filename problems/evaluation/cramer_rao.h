@@ -1,4 +1,4 @@
-// The Cramer-Rao bound of a frame pair: how accurate an estimate can be at best.
+// The Cramer-Rao bound of a frame pair: a lower bound on the errors of any unbiased estimate.
 #ifndef RIGEL_PROBLEMS_EVALUATION_CRAMER_RAO_H_
 #define RIGEL_PROBLEMS_EVALUATION_CRAMER_RAO_H_
 

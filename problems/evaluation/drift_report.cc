@@ -1,4 +1,5 @@
-// Drift of trajectories: table and JSON of rigel_estimate.
+#include "rigel/problems/evaluation/drift_report.h"
+
 #include <algorithm>
 #include <map>
 #include <string>
@@ -7,9 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "rigel/core/angles.h"
-#include "rigel/problems/evaluation/report.h"
+#include "rigel/problems/evaluation/summary_json.h"
 #include "rigel/problems/io/csv.h"
-#include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/report_json.h"
 #include "rigel/problems/io/table.h"
 #include "rigel/problems/trajectories/drift.h"
@@ -34,13 +34,6 @@ Json SegmentJson(const SegmentDrift& s) {
           {"rotation_deg_per_100m", DegPer100m(s.rotation)}};
 }
 
-Json StatisticsJson(const Statistics& s, double unit) {
-  return {{"median", unit * s.median},
-          {"mean", unit * s.mean},
-          {"rms", unit * s.rms},
-          {"p90", unit * s.p90}};
-}
-
 Json DriftJson(const Drift& drift) {
   Json json;
   if (!drift.by_length.empty()) {
@@ -55,7 +48,7 @@ Json DriftJson(const Drift& drift) {
     kitti["by_length"] = rows;
     json["kitti"] = kitti;
   }
-  json["step"] = {{"translation_m", StatisticsJson(*drift.step_translation, 1.0)},
+  json["step"] = {{"translation_m", StatisticsJson(*drift.step_translation)},
                   {"rotation_deg", StatisticsJson(*drift.step_rotation, RadToDeg(1.0))}};
   json["end"] = {{"translation_m", drift.end_translation},
                  {"rotation_deg", RadToDeg(drift.end_rotation)}};
@@ -123,7 +116,8 @@ std::string DriftTable(const EstimateReport& report) {
   if (remarks.empty()) return "";
   std::string text = table.Format();
   for (const auto& [remark, trajectories] : remarks) {
-    // Trajectories that a remark names; of more it tells the number, and stays a short line.
+    // Trajectories listed in a remark. Of the others the number is given, so that the line is
+    // short.
     constexpr size_t kListed = 5;
     for (size_t k = 0; k < std::min(kListed, trajectories.size()); ++k) {
       text += (k > 0 ? ", " : "") + std::to_string(trajectories[k]);

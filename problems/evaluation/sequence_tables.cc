@@ -29,8 +29,6 @@ struct Quantity {
   std::array<Figure, 2> (*of)(const SolverSummary&);
 };
 
-Figure Median(const std::optional<Statistics>& s) { return s ? Figure(s->median) : std::nullopt; }
-
 const Quantity kQuantities[] = {
     {"time [ms], mean: of RANSAC, with the refinement", "RANSAC", "both", PaperTable::kRuntimeMs, 2,
      [](const SolverSummary& s) {
@@ -43,11 +41,12 @@ const Quantity kQuantities[] = {
      }},
     {"rotation error [deg], median", "raw", "refined", PaperTable::kRotationDeg, 4,
      [](const SolverSummary& s) {
-       return std::array<Figure, 2>{Median(s.raw_rotation_deg), Median(s.refined_rotation_deg)};
+       return std::array<Figure, 2>{MedianOf(s.raw_rotation_deg), MedianOf(s.refined_rotation_deg)};
      }},
     {"translation direction error [deg], median", "raw", "refined", PaperTable::kDirectionDeg, 4,
      [](const SolverSummary& s) {
-       return std::array<Figure, 2>{Median(s.raw_direction_deg), Median(s.refined_direction_deg)};
+       return std::array<Figure, 2>{MedianOf(s.raw_direction_deg),
+                                    MedianOf(s.refined_direction_deg)};
      }},
 };
 
@@ -84,7 +83,7 @@ struct Column {
 std::vector<std::string> Marked(const std::vector<Figure>& figures, int digits) {
   std::vector<std::string> texts;
   for (const Figure& figure : figures) texts.push_back(FormatFitted(figure, digits, kFigureWidth));
-  // What is shown as equal is equally good.
+  // Figures are compared as they are shown.
   const auto shown = [](const std::string& text) { return std::strtod(text.c_str(), nullptr); };
   const std::string* best = nullptr;
   bool all_equal = true;

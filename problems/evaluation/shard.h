@@ -11,8 +11,8 @@ struct Shard {
   int index = 0;  // 0 to count - 1
   int count = 1;
 
-  // The items [first, second) of `n` are this shard's. Shards follow each other, so that what is
-  // one drive stays together, and their sizes differ by one at most.
+  // This shard has the items [first, second) of `n`. Shards are contiguous, so that a drive stays
+  // together, and their sizes differ by at most one.
   std::pair<int, int> Range(int n) const;
 };
 

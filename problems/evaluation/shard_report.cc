@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -12,15 +13,15 @@
 #include "rigel/core/angles.h"
 #include "rigel/problems/io/json_message.h"
 #include "rigel/problems/io/json_text.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
 
 namespace rigel {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The angle that RadToDeg() turned into `degrees`, to the last bit: statistics of a merged report
-// are then those of the whole. DegToRad() may be off by some units in the last place.
+// The angle from which RadToDeg() makes exactly `degrees`, so that a merged report has the
+// statistics of the whole. DegToRad() may be off by some units in the last place.
 double ExactRadians(double degrees) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const double radians = DegToRad(degrees);
@@ -35,7 +36,7 @@ double ExactRadians(double degrees) {
   return radians;
 }
 
-// Reading fails by exceptions, of the JSON library and these, which do not leave this file.
+// Exceptions of the JSON library and these end the reading. They do not leave this file.
 [[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
 
 MotionErrors Errors(const Json& json) {
@@ -49,13 +50,9 @@ MotionErrors Errors(const Json& json) {
 }
 
 EstimateStatus Status(const std::string& name) {
-  for (const EstimateStatus status :
-       {EstimateStatus::kNotRun, EstimateStatus::kSuccess, EstimateStatus::kInvalidInput,
-        EstimateStatus::kTooFewMatches, EstimateStatus::kNoSolution, EstimateStatus::kNotRefined,
-        EstimateStatus::kNoConsensus}) {
-    if (name == EstimateStatusName(status)) return status;
-  }
-  Fail("there is no status '" + name + "'");
+  EstimateStatus status;
+  if (!ParseEstimateStatus(name, &status)) Fail("there is no status '" + name + "'");
+  return status;
 }
 
 PairResult Result(const Json& json) {
@@ -104,7 +101,7 @@ ComparisonReport Report(std::string_view text) {
   }
   for (const Json& entry : json.at("results")) {
     const auto solver = entry.at("solver").get<std::string>();
-    // More entries of the same solver are for sequences.
+    // Further entries of a solver are those of sequences.
     if (!HasSolver(report, solver)) report.solvers.push_back({solver, {}});
   }
   if (report.solvers.empty()) Fail("it has no results");
@@ -124,8 +121,8 @@ ComparisonReport Report(std::string_view text) {
   return report;
 }
 
-// The line of the number that no double holds, 0 if it is another error: of those of syntax the
-// library tells the line, of this only the number.
+// The line of a number that is too large for a double; 0 for other errors. The library states the
+// line of syntax errors itself, but only the number for this one.
 int LineOfOverflow(std::string_view text, const std::exception& exception) {
   const std::string message = exception.what();
   const std::string what = "number overflow parsing '";
@@ -169,68 +166,69 @@ std::string Difference(const ReportOptions& a, const ReportOptions& b) {
   return "";
 }
 
-}  // namespace
-
-bool ParseShardReport(std::string_view text, const std::string& name, ComparisonReport* report,
-                      std::string* error) {
-  try {
-    *report = Report(text);
-    return true;
-  } catch (const std::exception& e) {
-    const int line = LineOfOverflow(text, e);
-    *error = PrintablePath(name + (line > 0 ? ":" + std::to_string(line) : "") +
-                           ": not a report that can be merged: " + JsonMessage(e));
-    return false;
+// Why the two are not shards of one run; empty if they are.
+std::string WhyNotTogether(const ComparisonReport& a, const ComparisonReport& b) {
+  if (a.shard->count != b.shard->count || a.num_files != b.num_files) {
+    return "not shards of the same input: " + ShardText(*a.shard) + " of " +
+           std::to_string(a.num_files) + " files and " + ShardText(*b.shard) + " of " +
+           std::to_string(b.num_files);
   }
+  if (a.version != b.version) {
+    return "made by other versions: " + VersionText(a) + " and " + VersionText(b);
+  }
+  const std::string difference = Difference(a.options, b.options);
+  return difference.empty() ? "" : "made with other options: " + difference;
 }
 
-bool MergeShards(const std::vector<std::string>& names, std::vector<ComparisonReport>* shards,
-                 ComparisonReport* whole, std::string* error) {
-  const auto fail = [error](const std::string& message) {
-    *error = PrintablePath(message);
+// The report of each shard, by its index. False with what is wrong if they are not all of the
+// shards of one run, each once.
+bool CheckShards(const std::vector<std::string>& names, const std::vector<ComparisonReport>& shards,
+                 std::vector<int>* report_of, std::string* what) {
+  if (shards.empty()) {
+    *what = "no reports to merge";
     return false;
-  };
-  if (shards->empty()) return fail("no reports to merge");
-  const ComparisonReport& first = shards->front();
-  const int count = first.shard->count;
-  std::vector<int> report_of(std::min<size_t>(count, shards->size()), -1);
-  for (size_t k = 0; k < shards->size(); ++k) {
-    const ComparisonReport& report = (*shards)[k];
-    const std::string both = names.front() + " and " + names[k] + ": ";
-    if (report.shard->count != count || report.num_files != first.num_files) {
-      return fail(both + "not shards of the same input: " + ShardText(*first.shard) + " of " +
-                  std::to_string(first.num_files) + " files and " + ShardText(*report.shard) +
-                  " of " + std::to_string(report.num_files));
+  }
+  const ComparisonReport& first = shards.front();
+  const auto count = static_cast<size_t>(first.shard->count);
+  // The stated count may be wrong: memory is bounded by the number of reports.
+  report_of->assign(std::min(count, shards.size()), -1);
+  std::map<int, size_t> report_of_index;
+  for (size_t k = 0; k < shards.size(); ++k) {
+    const ComparisonReport& report = shards[k];
+    const std::string why_not = WhyNotTogether(first, report);
+    if (!why_not.empty()) {
+      *what = names.front() + " and " + names[k] + ": " + why_not;
+      return false;
     }
-    if (report.version != first.version) {
-      return fail(both + "made by other versions: " + VersionText(first) + " and " +
-                  VersionText(report));
+    const auto [other, is_new] = report_of_index.emplace(report.shard->index, k);
+    if (!is_new) {
+      *what = names[other->second] + " and " + names[k] + ": both are shard " +
+              ShardText(*report.shard);
+      return false;
     }
-    const std::string difference = Difference(first.options, report.options);
-    if (!difference.empty()) return fail(both + "made with other options: " + difference);
-    for (size_t other = 0; other < k; ++other) {
-      if ((*shards)[other].shard->index == report.shard->index) {
-        return fail(names[other] + " and " + names[k] + ": both are shard " +
-                    ShardText(*report.shard));
-      }
-    }
-    if (report.shard->index < static_cast<int>(report_of.size())) {
-      report_of[report.shard->index] = static_cast<int>(k);
+    if (static_cast<size_t>(report.shard->index) < report_of->size()) {
+      (*report_of)[report.shard->index] = static_cast<int>(k);
     }
   }
-  const auto missing = std::find(report_of.begin(), report_of.end(), -1);
-  if (static_cast<int>(shards->size()) < count) {
-    const auto index = static_cast<int>(missing - report_of.begin());
-    return fail("shard " + ShardText({index, count}) + " is missing: " +
-                std::to_string(shards->size()) + " reports of " + std::to_string(count));
-  }
+  if (shards.size() >= count) return true;
+  const auto missing = std::find(report_of->begin(), report_of->end(), -1);
+  const auto index = static_cast<int>(missing - report_of->begin());
+  *what = "shard " + ShardText({index, first.shard->count}) +
+          " is missing: " + std::to_string(shards.size()) + " reports of " + std::to_string(count);
+  return false;
+}
 
+// The results of the shards, in the order of `report_of`. False with what is wrong if nothing is
+// left.
+bool JoinShards(const std::vector<int>& report_of, std::vector<ComparisonReport>* shards,
+                ComparisonReport* whole, std::string* what) {
+  const ComparisonReport& first = shards->front();
   whole->version = first.version;
   whole->options = first.options;
   whole->shard.reset();
   whole->num_files = 0;
   whole->solvers.clear();
-  // Where solvers were chosen by the priors, the whole has those that every shard has.
+  // If solvers were chosen by the priors, the whole report has those that every shard has.
   for (const SolverResults& solver : first.solvers) {
     if (std::all_of(shards->begin(), shards->end(), [&](const ComparisonReport& report) {
           return HasSolver(report, solver.solver);
@@ -238,7 +236,10 @@ bool MergeShards(const std::vector<std::string>& names, std::vector<ComparisonRe
       whole->solvers.push_back({solver.solver, {}});
     }
   }
-  if (whole->solvers.empty()) return fail("no solver's prior is in every file");
+  if (whole->solvers.empty()) {
+    *what = "no solver's prior is in every file";
+    return false;
+  }
   for (const int k : report_of) {
     for (SolverResults& solver : whole->solvers) {
       for (SolverResults& part : (*shards)[k].solvers) {
@@ -248,7 +249,37 @@ bool MergeShards(const std::vector<std::string>& names, std::vector<ComparisonRe
       }
     }
   }
-  if (whole->solvers.front().pairs.empty()) return fail("no pair in any of the reports");
+  if (whole->solvers.front().pairs.empty()) {
+    *what = "no pair in any of the reports";
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool ParseShardReport(std::string_view text, const std::string& name, ComparisonReport* report,
+                      std::string* error) {
+  try {
+    *report = Report(text);
+    return true;
+  } catch (const std::exception& e) {
+    const int line = LineOfOverflow(text, e);
+    *error = Printable(name + (line > 0 ? ":" + std::to_string(line) : "") +
+                       ": not a report that can be merged: " + JsonMessage(e));
+    return false;
+  }
+}
+
+bool MergeShards(const std::vector<std::string>& names, std::vector<ComparisonReport>* shards,
+                 ComparisonReport* whole, std::string* error) {
+  std::string what;
+  std::vector<int> report_of;
+  if (!CheckShards(names, *shards, &report_of, &what) ||
+      !JoinShards(report_of, shards, whole, &what)) {
+    *error = Printable(what);
+    return false;
+  }
   return true;
 }
 

@@ -1,4 +1,4 @@
-// Reports of shards (format "rigel-report 1", docs/formats.md) put together to that of the whole.
+// Merges the reports of shards (format "rigel-report 1", docs/formats.md).
 #ifndef RIGEL_PROBLEMS_EVALUATION_SHARD_REPORT_H_
 #define RIGEL_PROBLEMS_EVALUATION_SHARD_REPORT_H_
 
@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rigel/problems/evaluation/report.h"
+#include "rigel/problems/evaluation/comparison_report.h"
 
 namespace rigel {
 
@@ -15,10 +15,10 @@ namespace rigel {
 bool ParseShardReport(std::string_view text, const std::string& name, ComparisonReport* report,
                       std::string* error);
 
-// The report that one run over all files would have made; `names` are those of the reports, for
-// messages. Takes the results out of `shards`, which may be in any order. False with a message if
-// they are not all of the shards of one input, each once and made with the same options, or if none
-// has a pair.
+// The report that one run over all files would have made. `names` are the names of the reports for
+// messages. Moves the results out of `shards`, which may be in any order. False with a message
+// unless they are all shards of one input, each once and made with the same options, and some have
+// pairs.
 bool MergeShards(const std::vector<std::string>& names, std::vector<ComparisonReport>* shards,
                  ComparisonReport* whole, std::string* error);
 

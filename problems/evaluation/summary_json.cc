@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 void Put(const char* key, const std::optional<Statistics>& s, Json* object) {
   if (!s) return;
-  (*object)[key] = {{"median", s->median}, {"mean", s->mean}, {"rms", s->rms}, {"p90", s->p90}};
+  (*object)[key] = StatisticsJson(*s);
 }
 
 void PutGroup(const char* key, const Json& group, Json* object) {
@@ -32,6 +32,13 @@ std::optional<Statistics> Get(const Json& object, const char* key) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json StatisticsJson(const Statistics& s, double unit) {
+  return {{"median", unit * s.median},
+          {"mean", unit * s.mean},
+          {"rms", unit * s.rms},
+          {"p90", unit * s.p90}};
+}
 
 nlohmann::ordered_json SummaryJson(const SolverSummary& s) {
   Json entry;

@@ -1,5 +1,5 @@
-// A SolverSummary as the reports of rigel_compare and rigel_experiment write it. Not installed: the
-// JSON library is the build's alone.
+// A SolverSummary as JSON, as in the reports of rigel_compare and rigel_experiment. Not installed:
+// users need no JSON library.
 #ifndef RIGEL_PROBLEMS_EVALUATION_SUMMARY_JSON_H_
 #define RIGEL_PROBLEMS_EVALUATION_SUMMARY_JSON_H_
 
@@ -8,6 +8,9 @@
 #include "rigel/problems/evaluation/comparison.h"
 
 namespace rigel {
+
+// Median, mean, RMS and 90th percentile, times `unit`.
+nlohmann::ordered_json StatisticsJson(const Statistics& statistics, double unit = 1.0);
 
 nlohmann::ordered_json SummaryJson(const SolverSummary& summary);
 

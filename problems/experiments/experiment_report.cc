@@ -79,12 +79,8 @@ std::optional<double> MiddleOf(std::vector<double> values) {
   return values[(values.size() - 1) / 2];
 }
 
-std::string QuantityTable(const ExperimentPlan& plan, const std::vector<ExperimentRow>& rows,
-                          const std::string& title, const Quantity& raw, const Quantity& refined,
-                          const Quantity& bound, double factor) {
-  const ExperimentSpec& spec = *plan.spec;
-  const bool driven = spec.variable == ExperimentVariable::kNone;
-  Table table(1);
+// The head lines: the names of the solvers broken into lines, all ending in the last line.
+void AddHeads(const ExperimentSpec& spec, bool driven, Table* table) {
   std::vector<std::vector<std::string>> heads;
   for (const std::string& solver : spec.solvers) heads.push_back(Broken(solver));
   heads.push_back({"refined"});
@@ -99,29 +95,57 @@ std::string QuantityTable(const ExperimentPlan& plan, const std::vector<Experime
       const size_t skip = depth - head.size();
       cells.push_back(line >= skip ? head[line - skip] : "");
     }
-    table.AddHeader(cells);
+    table->AddHeader(cells);
   }
+}
+
+// What a table shows: medians of the paper's loop, times a factor.
+struct Shown {
+  const char* title;
+  Quantity raw, refined, bound;
+  double factor = 1.0;
+};
+
+// Adds the row of a point. Whether any solver has a value in it.
+bool AddPoint(const Shown& shown, const ExperimentSpec& spec, const ExperimentPoint& point,
+              const std::vector<ExperimentRow>& rows, std::vector<std::string> cells,
+              Table* table) {
+  const auto append = [&](const std::optional<Statistics>& s, std::vector<double>* values) {
+    if (s) values->push_back(shown.factor * s->median);
+  };
+  bool any = false;
+  std::vector<double> refined_values, bound_values;
+  for (const std::string& solver : spec.solvers) {
+    const ExperimentRow* row = Find(rows, point, solver, kPaperLoop);
+    std::optional<double> value;
+    if (row != nullptr) {
+      if (const auto s = shown.raw(row->summary)) value = shown.factor * s->median;
+      append(shown.refined(row->summary), &refined_values);
+      append(shown.bound(row->summary), &bound_values);
+    }
+    any = any || value.has_value();
+    cells.push_back(FormatFitted(value, 4, 7));
+  }
+  cells.push_back(FormatFitted(MiddleOf(refined_values), 4, 7));
+  cells.push_back(FormatFitted(MiddleOf(bound_values), 4, 6));
+  table->AddRow(cells);
+  return any;
+}
+
+// Empty if no solver has a value at any point.
+std::string QuantityTable(const ExperimentPlan& plan, const std::vector<ExperimentRow>& rows,
+                          const Shown& shown) {
+  const ExperimentSpec& spec = *plan.spec;
+  const bool driven = spec.variable == ExperimentVariable::kNone;
+  Table table(1);
+  AddHeads(spec, driven, &table);
   bool any = false;
   for (const ExperimentPoint& point : plan.points) {
     std::vector<std::string> cells = {driven ? point.sequence : point.motion};
     if (!driven) cells.push_back(CsvNumber(*point.x));
-    std::vector<double> refined_values, bound_values;
-    for (const std::string& solver : spec.solvers) {
-      const ExperimentRow* row = Find(rows, point, solver, kPaperLoop);
-      std::optional<double> value;
-      if (row != nullptr) {
-        if (const auto s = raw(row->summary)) value = factor * s->median;
-        if (const auto s = refined(row->summary)) refined_values.push_back(factor * s->median);
-        if (const auto s = bound(row->summary)) bound_values.push_back(factor * s->median);
-      }
-      any = any || value.has_value();
-      cells.push_back(FormatFitted(value, 4, 7));
-    }
-    cells.push_back(FormatFitted(MiddleOf(refined_values), 4, 7));
-    cells.push_back(FormatFitted(MiddleOf(bound_values), 4, 6));
-    table.AddRow(cells);
+    any = AddPoint(shown, spec, point, rows, std::move(cells), &table) || any;
   }
-  return any ? title + "\n" + table.Format() : "";
+  return any ? std::string(shown.title) + "\n" + table.Format() : "";
 }
 
 struct Column {
@@ -147,41 +171,34 @@ constexpr Column kColumns[] = {
 }  // namespace
 
 std::string ExperimentTable(const ExperimentPlan& plan, const std::vector<ExperimentRow>& rows) {
-  using S = SolverSummary;
   const std::string x = plan.spec->x_name;
   std::string text = std::string(plan.spec->name) + ": " + plan.spec->about + "\n";
   text += "medians of the raw motions by solver, the largest inlier count winning";
   text += x.empty() ? "" : "; x = " + x;
   text += "\n\n";
-  text += QuantityTable(
-      plan, rows, "rotation error [deg]", [](const S& s) { return s.raw_rotation_deg; },
-      [](const S& s) { return s.refined_rotation_deg; },
-      [](const S& s) { return s.bound_rotation_deg; }, 1.0);
-  const std::string direction = QuantityTable(
-      plan, rows, "translation direction error [deg]",
-      [](const S& s) { return s.raw_direction_deg; },
-      [](const S& s) { return s.refined_direction_deg; },
-      [](const S& s) { return s.bound_direction_deg; }, 1.0);
-  if (!direction.empty()) text += "\n" + direction;
+  const auto add = [&](const char* gap, const Shown& shown) {
+    const std::string table = QuantityTable(plan, rows, shown);
+    if (!table.empty()) text += gap + table;
+  };
+  const Quantity rotation = std::mem_fn(&SolverSummary::refined_rotation_deg);
+  const Quantity rotation_bound = std::mem_fn(&SolverSummary::bound_rotation_deg);
+  const Quantity direction = std::mem_fn(&SolverSummary::refined_direction_deg);
+  const Quantity direction_bound = std::mem_fn(&SolverSummary::bound_direction_deg);
+  add("", {"rotation error [deg]", std::mem_fn(&SolverSummary::raw_rotation_deg), rotation,
+           rotation_bound});
+  add("\n", {"translation direction error [deg]", std::mem_fn(&SolverSummary::raw_direction_deg),
+             direction, direction_bound});
   if (plan.spec->variable == ExperimentVariable::kNone) {
-    text += "\n" + QuantityTable(
-                       plan, rows, "refined: rotation error [deg]",
-                       [](const S& s) { return s.refined_rotation_deg; },
-                       [](const S& s) { return s.refined_rotation_deg; },
-                       [](const S& s) { return s.bound_rotation_deg; }, 1.0);
-    text += "\n" + QuantityTable(
-                       plan, rows, "refined: translation direction error [deg]",
-                       [](const S& s) { return s.refined_direction_deg; },
-                       [](const S& s) { return s.refined_direction_deg; },
-                       [](const S& s) { return s.bound_direction_deg; }, 1.0);
+    add("\n", {"refined: rotation error [deg]", rotation, rotation, rotation_bound});
+    add("\n",
+        {"refined: translation direction error [deg]", direction, direction, direction_bound});
   }
-  // Elsewhere it is observable without noise at most.
-  if (plan.spec->variable != ExperimentVariable::kInterShare) return text;
-  const std::string scale = QuantityTable(
-      plan, rows, "scale error [%]", [](const S& s) { return s.raw_scale; },
-      [](const S& s) { return s.refined_scale; },
-      [](const S&) { return std::optional<Statistics>(); }, 100.0);
-  if (!scale.empty()) text += "\n" + scale;
+  // Elsewhere the scale is observable without noise at most.
+  if (plan.spec->variable == ExperimentVariable::kInterShare) {
+    const auto no_bound = [](const SolverSummary&) { return std::optional<Statistics>(); };
+    add("\n", {"scale error [%]", std::mem_fn(&SolverSummary::raw_scale),
+               std::mem_fn(&SolverSummary::refined_scale), no_bound, 100.0});
+  }
   return text;
 }
 
@@ -265,7 +282,7 @@ bool ParsePointLine(const std::string& line, ExperimentPoint* point,
     return true;
   } catch (const std::exception& e) {
     *error = JsonMessage(e);
-    // Its line is always the first of this text; who calls knows that of the file.
+    // This text has one line. Its number in the file is known to the caller.
     const std::string first_line = " at line 1, column ";
     const size_t place = error->find(first_line);
     if (place != std::string::npos) error->replace(place, first_line.size(), " at column ");

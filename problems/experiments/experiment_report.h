@@ -21,18 +21,18 @@ std::string ExperimentJson(const ExperimentPlan& plan, const std::vector<Experim
 // One line a point, solver and loop.
 std::string ExperimentCsv(const ExperimentPlan& plan, const std::vector<ExperimentRow>& rows);
 
-// What tells runs apart whose points cannot be joined: 16 hexadecimal digits, the same for the same
-// options, solvers, points and recorded motions.
+// Identifies runs whose points can be joined: 16 hexadecimal digits, the same for the same options,
+// solvers, points and recorded motions.
 std::string RunId(const ExperimentPlan& plan);
 
-// One line of text that holds what a finished point of that run gave, and back. False with a
-// message if the text is not of that form. Version 0.1 wrote no run: it is empty then.
+// The results of a finished point as one line of text, and back. False with a message if the text
+// has another format. Version 0.1 wrote no run: it is then empty.
 std::string PointLine(const ExperimentPoint& point, const std::vector<ExperimentRow>& rows,
                       const std::string& run);
 bool ParsePointLine(const std::string& line, ExperimentPoint* point,
                     std::vector<ExperimentRow>* rows, std::string* run, std::string* error);
 
-// One line of text that says which run it is: its options, and the RunId(), empty as above.
+// One line of text that identifies the run: its options, and its RunId(), empty as above.
 std::string PlanLine(const ExperimentPlan& plan, const std::string& run);
 
 }  // namespace rigel

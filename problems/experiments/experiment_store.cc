@@ -4,13 +4,14 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <system_error>
 
 #include "rigel/problems/experiments/experiment_report.h"
+#include "rigel/problems/io/exception_message.h"
+#include "rigel/problems/io/input_file.h"
 #include "rigel/problems/io/json_text.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
 #include "rigel/problems/io/whole_file.h"
 
 namespace rigel {
@@ -22,7 +23,7 @@ bool Append(const std::string& path, const std::string& text, std::string* error
   if (ok) ok = std::fwrite(text.data(), 1, text.size(), file) == text.size();
   if (file != nullptr) ok = std::fclose(file) == 0 && ok;
   if (!ok) {
-    *error = PrintablePath(path) + ": cannot be written: " + std::generic_category().message(errno);
+    *error = Printable(path) + ": cannot be written: " + SystemMessage(errno);
   }
   return ok;
 }
@@ -38,24 +39,19 @@ bool ExperimentStore::Open(const std::string& path, const ExperimentPlan& plan, 
   std::error_code code;
   const bool there = std::filesystem::exists(path, code);
   if (code) {
-    *error = PrintablePath(path) + ": cannot be read: " + code.message();
+    *error = Printable(path) + ": cannot be read: " + code.message();
     return false;
   }
   if (resume && there &&
       (!std::filesystem::is_regular_file(path, code) ||
        std::filesystem::file_size(path, code) > kMaxJsonBytes)) {
-    *error = PrintablePath(path) + ": expected a file of at most 1 GiB";
+    *error = Printable(path) + ": expected a file of at most 1 GiB";
     return false;
   }
   if (!resume || !there) return WriteWholeFile(path, PlanLine(plan, run_), error);
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream stream;
-  stream << file.rdbuf();
-  if (!file || file.bad()) {
-    *error = PrintablePath(path) + ": cannot be read";
-    return false;
-  }
-  const std::string text = stream.str();
+  InputBytes bytes;
+  if (!ReadBytes(path, &bytes, error, kMaxJsonBytes)) return false;
+  const std::string text(bytes.text());
   const size_t end = text.rfind('\n');
   const std::string whole = end == std::string::npos ? "" : text.substr(0, end + 1);
   if (whole.empty()) return WriteWholeFile(path, PlanLine(plan, run_), error);
@@ -72,9 +68,9 @@ bool ExperimentStore::Read(const ExperimentPlan& plan, const std::string& text,
   if (line + "\n" == PlanLine(plan, "")) {
     run_.clear();  // of version 0.1
   } else if (line + "\n" != wanted) {
-    *error = PrintablePath(path_) +
+    *error = Printable(path_) +
              ":1: of another run; resume it with its own flags or name another directory\n" +
-             "  there: " + PrintablePath(line.substr(0, 400)) +
+             "  there: " + Printable(line.substr(0, 400)) +
              "\n  here:  " + wanted.substr(0, wanted.size() - 1);
     return false;
   }
@@ -95,8 +91,8 @@ bool ExperimentStore::Read(const ExperimentPlan& plan, const std::string& text,
       }
     }
     if (!what.empty()) {
-      *error = PrintablePath(path_) + ":" + std::to_string(number) +
-               ": no finished point: " + what + "; without this line the point is run again";
+      *error = Printable(path_) + ":" + std::to_string(number) + ": no finished point: " + what +
+               "; without this line the point is run again";
       return false;
     }
     points_.push_back(point);

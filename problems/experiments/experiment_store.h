@@ -1,7 +1,7 @@
-// Finished points of an experiment in a file, so that an interrupted run loses nothing.
+// Stores the finished points of an experiment in a file, so that an interrupted run can be resumed.
 //
-// One line of JSON says which run it is, each further one holds a finished point and the id of the
-// run. A line that an interruption cut short is dropped.
+// The first line of JSON identifies the run. Each further line has a finished point and the id of
+// the run. An incomplete last line of an interrupted run is dropped.
 #ifndef RIGEL_PROBLEMS_EXPERIMENTS_EXPERIMENT_STORE_H_
 #define RIGEL_PROBLEMS_EXPERIMENTS_EXPERIMENT_STORE_H_
 
@@ -14,9 +14,9 @@ namespace rigel {
 
 class ExperimentStore {
  public:
-  // Begins the file anew or, with `resume`, reads what it holds, if it is there. False with a
-  // message that names the file if it cannot be read or written, is of a run with other options or
-  // is not of this form.
+  // Starts a new file or, with `resume`, reads the file if it exists. False with a message that
+  // names the file if it cannot be read or written, belongs to a run with other options, or has
+  // another format.
   bool Open(const std::string& path, const ExperimentPlan& plan, bool resume, std::string* error);
 
   bool Has(const ExperimentPoint& point) const;

@@ -13,9 +13,11 @@
 
 #include "rigel/problems/images/stereo_stamps.h"
 #include "rigel/problems/io/csv.h"
+#include "rigel/problems/io/directory.h"
 #include "rigel/problems/io/input_file.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/parse_number.h"
 #include "rigel/problems/io/printable.h"
+#include "rigel/problems/io/rotation_check.h"
 #include "rigel/problems/io/text_lines.h"
 
 namespace rigel {
@@ -23,15 +25,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMaxRotationError = 1e-3;  // of any element of R'R - I, and of |q| - 1
-// ns: ten intervals of the truth at its 200 Hz. Over more a drone's path bends.
+// Nanoseconds: ten intervals of the truth at 200 Hz. In a longer gap linear interpolation is too
+// inaccurate for the path of a drone.
 constexpr int64_t kMaxTruthGap = 50'000'000;
 constexpr double kSecondsPerNanosecond = 1e-9;
-
-bool IsDirectory(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored);
-}
 
 // The node's numbers. Throws YAML::Exception with what was expected.
 std::vector<double> Numbers(const YAML::Node& node, const std::string& key, size_t count) {
@@ -84,9 +81,7 @@ ImageCamera ParseCamera(const YAML::Node& sensor) {
   Eigen::Matrix4d body_from_camera;
   for (int k = 0; k < 16; ++k) body_from_camera(k / 4, k % 4) = T[k];
   const Eigen::Matrix3d R = body_from_camera.topLeftCorner<3, 3>();
-  const Eigen::Matrix3d off = R.transpose() * R - Eigen::Matrix3d::Identity();
-  if (!(off.cwiseAbs().maxCoeff() <= kMaxRotationError) || !(R.determinant() > 0) ||
-      body_from_camera.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+  if (!IsRotation(R) || body_from_camera.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
     throw YAML::RepresentationException(pose.Mark(), "T_BS: data is not a rigid motion");
   }
   camera.Q = Eigen::Quaterniond(R).normalized().toRotationMatrix();
@@ -150,7 +145,7 @@ bool ReadImageList(const fs::path& camera, Images* images, std::string* error) {
   for (const TextLine& line : lines) {
     const std::vector<std::string_view> words = SplitAtCommas(line.text);
     int64_t time;
-    if (words.size() != 2 || !ParseTimestamp(words[0], &time) || words[1].empty()) {
+    if (words.size() != 2 || !ParseInteger(words[0], int64_t{0}, &time) || words[1].empty()) {
       *error = Where(path, line) + ": " + Quoted(line.text) +
                ", expected a time stamp in nanoseconds, a comma and a file name";
       return false;
@@ -158,7 +153,7 @@ bool ReadImageList(const fs::path& camera, Images* images, std::string* error) {
     if (!StaysInside(words[1])) {
       *error = Where(path, line) + ": " + Quoted(words[1]) +
                " leads out of the folder, expected a file in " +
-               PrintablePath((camera / "data").string());
+               Printable((camera / "data").string());
       return false;
     }
     if (!images->emplace(time, (camera / "data" / words[1]).string()).second) {
@@ -167,7 +162,7 @@ bool ReadImageList(const fs::path& camera, Images* images, std::string* error) {
     }
   }
   if (images->empty()) {
-    *error = PrintablePath(path) + ": there is no image in it";
+    *error = Printable(path) + ": there is no image in it";
     return false;
   }
   return true;
@@ -187,7 +182,7 @@ bool ReadTruth(const std::string& path, Poses* poses, std::string* error) {
       return false;
     }
     int64_t time;
-    if (!ParseTimestamp(words[0], &time)) {
+    if (!ParseInteger(words[0], int64_t{0}, &time)) {
       *error = Where(path, line) + ": " + Quoted(words[0]) + ", expected a time stamp in ns";
       return false;
     }
@@ -257,7 +252,7 @@ std::string Milliseconds(int64_t nanoseconds) {
 bool PairImages(const Images (&images)[2], const EurocOptions& options, ImageSequence* sequence,
                 Stamps* times, std::string* what) {
   const Stamps stamps[2] = {StampsOf(images[0]), StampsOf(images[1])};
-  // Doubles of more than the largest integer do not become one.
+  // Nanoseconds: larger doubles cannot be converted to int64_t.
   constexpr double kMaxTolerance = 9e18;
   const int64_t tolerance = options.sync_tolerance_ms
                                 ? static_cast<int64_t>(std::min(
@@ -311,7 +306,7 @@ bool ReadEurocSequence(const std::string& root, const EurocOptions& options,
       IsDirectory(fs::path(root) / "mav0") ? fs::path(root) / "mav0" : fs::path(root);
   const auto camera_folder = [&](int k) { return mav / ("cam" + std::to_string(k)); };
   if (!IsDirectory(camera_folder(0)) || !IsDirectory(camera_folder(1))) {
-    *error = PrintablePath(root) +
+    *error = Printable(root) +
              ": expected EuRoC's folder mav0 with cam0 and cam1, or the folder that holds mav0";
     return false;
   }
@@ -329,24 +324,23 @@ bool ReadEurocSequence(const std::string& root, const EurocOptions& options,
     }
   }
   for (int k = 2; IsDirectory(camera_folder(k)); ++k) {
-    result.notes.push_back(PrintablePath(camera_folder(k).string()) +
+    result.notes.push_back(Printable(camera_folder(k).string()) +
                            ": not used; the rig is cam0 and cam1");
   }
   Stamps times;
   std::string what;
   if (!PairImages(images, options, &result, &times, &what)) {
-    *error = PrintablePath(mav.string()) + ": " + what;
+    *error = Printable(mav.string()) + ": " + what;
     return false;
   }
   for (int k = 0; k < 2; ++k) {
-    result.notes.push_back(LeftOut(PrintablePath((camera_folder(k) / "data.csv").string()),
+    result.notes.push_back(LeftOut(Printable((camera_folder(k) / "data.csv").string()),
                                    images[k].size() - times.size(), images[k].size(),
                                    k == 0 ? "cam1" : "cam0"));
   }
 
   const std::string truth_path = (mav / "state_groundtruth_estimate0" / "data.csv").string();
-  std::error_code ignored;
-  if (fs::exists(truth_path, ignored)) {
+  if (Exists(truth_path)) {
     Poses poses;
     if (!ReadTruth(truth_path, &poses, error)) return false;
     size_t without = 0;
@@ -355,7 +349,7 @@ bool ReadEurocSequence(const std::string& root, const EurocOptions& options,
       if (!result.frames[k].world_from_body) ++without;
     }
     if (without > 0) {
-      result.notes.push_back(PrintablePath(truth_path) + ": " + std::to_string(without) + " of " +
+      result.notes.push_back(Printable(truth_path) + ": " + std::to_string(without) + " of " +
                              std::to_string(times.size()) +
                              " frames lie outside it or in a gap of it and get no truth");
     }

@@ -19,20 +19,23 @@
 namespace rigel {
 
 struct EurocOptions {
-  // How far the time stamps of a frame's two images may be apart, milliseconds; 0 or more. None: a
-  // tenth of the frame interval (of cam0's, the median).
+  // The largest difference of the time stamps of a frame's two images, milliseconds; 0 or more.
+  // None: a tenth of the median frame interval of cam0.
   std::optional<double> sync_tolerance_ms;
 
   bool IsValid(std::string* error) const;
 };
 
-// `root` is mav0 or the folder that holds it; the latter names the sequence. A frame is an image of
-// cam0 and one of cam1, in time each other's nearest and within the tolerance; its time is that of
-// cam0. Images without a partner are left out, and counted in the notes, which also have the
-// largest difference of two partners' stamps and the cameras that are not used. Image files lie in
-// the cameras' folders data: a name that leads out of it is refused. The ground truth is
-// interpolated to the time of a frame; where it has a gap there (of more than 50 ms), the frame has
-// none. False with a message that names the file, and the line where there is one.
+// `root` is mav0 or the folder that contains it, which names the sequence.
+//   - A frame is an image of cam0 and an image of cam1 that are nearest to each other in time and
+//     within the tolerance. Its time is that of cam0. Images without a partner are left out.
+//   - The notes have the number of these, the largest difference of the stamps of partners, and the
+//     cameras that are not used.
+//   - Image files are in the folder data of a camera. A name that leads out of it is refused.
+//   - The ground truth is interpolated to the time of a frame. In a gap of more than 50 ms a frame
+//   has
+//     no truth.
+// False with a message that names the file, and the line if there is one.
 bool ReadEurocSequence(const std::string& root, const EurocOptions& options,
                        ImageSequence* sequence, std::string* error);
 

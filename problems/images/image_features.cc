@@ -1,129 +1,37 @@
 #include "rigel/problems/images/image_features.h"
 
-#include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <string_view>
-#include <system_error>
-#include <tuple>
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
-#include <opencv2/imgcodecs.hpp>
 
+#include "rigel/core/enum_names.h"
+#include "rigel/problems/images/image_file.h"
 #include "rigel/problems/io/exception_message.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
 
 namespace rigel {
 namespace {
+
+constexpr EnumName<FeatureType> kFeatureNames[] = {{FeatureType::kSift, "sift"},
+                                                   {FeatureType::kOrb, "orb"}};
 
 // Of an image. The time of matching grows with their square.
 constexpr int kMaxFeatures = 20000;
 constexpr float kOrbScale = 1.2f;  // between two levels of the pyramid, as OpenCV has it
 
-// Four digits say what a key point and a ratio are worth, and keep the files small.
-double Rounded(double value) { return std::round(value * 1e4) / 1e4; }
-
-// Told here, as libpng would write about it to stderr.
-bool IsCutOffPng(const std::vector<char>& bytes) {
-  constexpr std::string_view kBegin = "\x89PNG";
-  constexpr std::string_view kEnd = "IEND\xae\x42\x60\x82";
-  const std::string_view text(bytes.data(), bytes.size());
-  return text.substr(0, kBegin.size()) == kBegin && text.rfind(kEnd) == std::string_view::npos;
-}
-
-// The larger an image, the more its bytes can announce: told before anything is decoded. Pixels of
-// an image and bytes of a file; both are far more than any camera's, and bound the memory.
-constexpr int64_t kMaxPixels = 200000000;
-constexpr size_t kMaxImageBytes = size_t{1} << 30;
-
-// Width times height by the head of a PNG or a JPEG; 0 if there is none. Of other kinds OpenCV
-// decodes at most 2^30 pixels.
-int64_t AnnouncedPixels(const std::vector<char>& bytes) {
-  const auto number = [&](size_t begin, size_t count) {
-    int64_t value = 0;
-    for (size_t k = begin; k < begin + count; ++k) {
-      value = 256 * value + static_cast<unsigned char>(bytes[k]);
-    }
-    return value;
-  };
-  const std::string_view text(bytes.data(), bytes.size());
-  if (text.substr(0, 4) == "\x89PNG") {
-    return bytes.size() < 24 ? 0 : number(16, 4) * number(20, 4);
-  }
-  if (text.substr(0, 2) != "\xff\xd8") return 0;
-  // Segments: ff, kind, length with these two bytes; the frame's are c0 to cf but for three.
-  for (size_t k = 2; k + 9 < bytes.size() && bytes[k] == '\xff';) {
-    const auto kind = static_cast<int>(number(k + 1, 1));
-    if (kind >= 0xc0 && kind <= 0xcf && kind != 0xc4 && kind != 0xc8 && kind != 0xcc) {
-      return number(k + 5, 2) * number(k + 7, 2);
-    }
-    k += kind == 0xff ? 1 : 2 + static_cast<size_t>(number(k + 2, 2));
-  }
-  return 0;
-}
-
-bool ReadImage(const std::string& path, cv::Mat* image, std::string* error) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    *error = PrintablePath(path) + ": cannot be opened: " + std::generic_category().message(errno);
-    return false;
-  }
-  std::vector<char> bytes;
-  std::error_code no_size;
-  const uintmax_t size = std::filesystem::file_size(path, no_size);
-  bool too_long = !no_size && size > kMaxImageBytes;
-  for (char buffer[1 << 16];
-       !too_long && (file.read(buffer, sizeof(buffer)) || file.gcount() > 0);) {
-    too_long = bytes.size() + static_cast<size_t>(file.gcount()) > kMaxImageBytes;
-    if (!too_long) bytes.insert(bytes.end(), buffer, buffer + file.gcount());
-  }
-  if (too_long) {
-    *error = PrintablePath(path) + ": more than 1 GiB, expected an image of no more";
-    return false;
-  }
-  if (file.bad()) {
-    *error = PrintablePath(path) + ": cannot be read";
-    return false;
-  }
-  if (IsCutOffPng(bytes)) {
-    *error = PrintablePath(path) + ": the image is cut off";
-    return false;
-  }
-  const auto too_large = [&](int64_t pixels) {
-    *error = PrintablePath(path) + ": " + std::to_string(pixels) + " pixels, expected at most " +
-             std::to_string(kMaxPixels / 1000000) + " million";
-    return false;
-  };
-  const int64_t announced = AnnouncedPixels(bytes);
-  if (announced > kMaxPixels) return too_large(announced);
-  if (!bytes.empty()) {
-    *image = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
-  }
-  if (static_cast<int64_t>(image->total()) > kMaxPixels) {
-    return too_large(static_cast<int64_t>(image->total()));
-  }
-  if (!image->empty()) return true;
-  *error = PrintablePath(path) + ": not an image that can be decoded" +
-           (bytes.empty() ? ": the file is empty" : "");
-  return false;
-}
-
-// Where a key point really is. SIFT of OpenCV starts from the image at twice its size, whose pixel
-// x lies at x/2 - 1/4; it reports x/2.
+// The true position of a key point. OpenCV's SIFT starts with the image at twice its size, whose
+// pixel x lies at x/2 - 1/4, but reports x/2.
 cv::Point2d SiftPixel(const cv::KeyPoint& point) {
   // Pixels: the quarter of the formula above.
   constexpr double kShift = 0.25;
   return {point.pt.x - kShift, point.pt.y - kShift};
 }
 
-// ORB reports the pixel of its level times the nominal scale; levels are of whole pixels, and their
-// corners, not the centres of their first pixels, lie upon each other.
+// ORB reports the pixel of its level times the nominal scale. But levels have whole numbers of
+// pixels, and it is their corners that coincide, not the centres of their first pixels.
 cv::Point2d OrbPixel(const cv::KeyPoint& point, const cv::Size& size) {
   const float scale = std::pow(kOrbScale, static_cast<float>(point.octave));
   const auto whole = [&](float x, int length) {
@@ -140,8 +48,8 @@ void Undistort(const ImageCamera& camera, std::vector<cv::Point2d>* points,
                std::vector<bool>* valid) {
   valid->assign(points->size(), true);
   if (!camera.distortion || points->empty()) return;
-  // Of OpenCV's fixed-point iteration, which is slow where the lens distorts much; kMaxError
-  // finds the points that need more.
+  // Iterations of OpenCV's fixed-point method, which converges slowly where distortion is strong.
+  // kMaxError finds the points that need more.
   constexpr int kMaxIterations = 50;
   constexpr double kEpsilon = 1e-6;   // px, where it ends: far below the noise
   constexpr double kMaxError = 1e-2;  // px, of a point that was distorted again
@@ -163,71 +71,15 @@ void Undistort(const ImageCamera& camera, std::vector<cv::Point2d>* points,
   }
 }
 
-// Squared distances (SIFT) or numbers of bits (ORB) between the rows begin..end-1 of `a` and all
-// rows of `b`, as a matrix of int. Whole numbers: the same on any machine.
-void Distances(FeatureType type, const cv::Mat& a, int begin, int end, const cv::Mat& b,
-               cv::Mat* distances) {
-  if (type == FeatureType::kOrb) {
-    cv::batchDistance(a.rowRange(begin, end), b, *distances, CV_32S, cv::noArray(),
-                      cv::NORM_HAMMING);
-    return;
-  }
-  distances->create(end - begin, b.rows, CV_32S);
-  constexpr int kSize = 128;  // of a descriptor; known to the compiler it makes one loop of vectors
-  for (int i = begin; i < end; ++i) {
-    const int16_t* const x = a.ptr<int16_t>(i);
-    int* const out = distances->ptr<int>(i - begin);
-    for (int j = 0; j < b.rows; ++j) {
-      const int16_t* const y = b.ptr<int16_t>(j);
-      int sum = 0;
-      for (int k = 0; k < kSize; ++k) {
-        const auto difference = static_cast<int16_t>(x[k] - y[k]);
-        sum += difference * difference;
-      }
-      out[j] = sum;
-    }
-  }
-}
-
-// The nearest of one descriptor and the distance of the second.
-struct Nearest {
-  int index = -1;
-  int first = std::numeric_limits<int>::max();
-  int second = std::numeric_limits<int>::max();
-
-  void Add(int candidate, int distance) {
-    if (distance < first) {
-      second = first;
-      first = distance;
-      index = candidate;
-    } else if (distance < second) {
-      second = distance;
-    }
-  }
-
-  // Of the first distance to the second; 1 if that cannot be told from one candidate.
-  double Ratio(FeatureType type) const {
-    if (second == std::numeric_limits<int>::max() || second == 0) return 1.0;
-    const double ratio = static_cast<double>(first) / second;
-    return type == FeatureType::kSift ? std::sqrt(ratio) : ratio;
-  }
-};
-
 }  // namespace
 
-const char* FeatureTypeName(FeatureType type) {
-  return type == FeatureType::kSift ? "sift" : "orb";
+const char* FeatureTypeName(FeatureType type) { return NameOf(kFeatureNames, type); }
+
+bool ParseFeatureType(std::string_view name, FeatureType* type) {
+  return FindValue(kFeatureNames, name, type);
 }
 
-bool ParseFeatureType(const std::string& name, FeatureType* type) {
-  for (const FeatureType candidate : {FeatureType::kSift, FeatureType::kOrb}) {
-    if (name == FeatureTypeName(candidate)) {
-      *type = candidate;
-      return true;
-    }
-  }
-  return false;
-}
+double RoundedToFile(double value) { return std::round(value * 1e4) / 1e4; }
 
 bool FeatureOptions::IsValid(std::string* error) const {
   if (max_features < 1 || max_features > kMaxFeatures) {
@@ -247,7 +99,7 @@ bool ExtractFeatures(const FeatureOptions& options, const ImageCamera& camera,
   if (!ReadImage(path, &image, error)) return false;
   const PinholeCamera& c = camera.camera.intrinsics;
   if (c.width > 0 && image.size() != cv::Size(c.width, c.height)) {
-    *error = PrintablePath(path) + ": " + std::to_string(image.cols) + " x " +
+    *error = Printable(path) + ": " + std::to_string(image.cols) + " x " +
              std::to_string(image.rows) + " pixels, expected " + std::to_string(c.width) + " x " +
              std::to_string(c.height) + " as the calibration says";
     return false;
@@ -276,7 +128,7 @@ bool ExtractFeatures(const FeatureOptions& options, const ImageCamera& camera,
   result.height = image.rows;
   for (size_t k = 0; k < pixels.size(); ++k) {
     if (!valid[k]) continue;
-    result.pixels.emplace_back(Rounded(pixels[k].x), Rounded(pixels[k].y));
+    result.pixels.emplace_back(RoundedToFile(pixels[k].x), RoundedToFile(pixels[k].y));
     result.descriptors.push_back(descriptors.row(static_cast<int>(k)));
   }
   // SIFT's numbers are integers from 0 to 255 in float.
@@ -284,49 +136,8 @@ bool ExtractFeatures(const FeatureOptions& options, const ImageCamera& camera,
   *features = std::move(result);
   return true;
 } catch (const std::exception& exception) {
-  *error = PrintablePath(path) + ": " + ExceptionMessage(exception);
+  *error = Printable(path) + ": " + ExceptionMessage(exception);
   return false;
-}
-
-void AppendMatches(const FeatureOptions& options, int camera1, const ImageFeatures& features1,
-                   int camera2, const ImageFeatures& features2, std::vector<Match>* matches) {
-  const int rows = static_cast<int>(features1.pixels.size());
-  const int columns = static_cast<int>(features2.pixels.size());
-  if (rows == 0 || columns == 0) return;
-  std::vector<Nearest> of_row(rows), of_column(columns);
-  // Some rows at a time, so that the distances stay in the cache.
-  constexpr int kBlock = 32;
-  cv::Mat distances;
-  for (int begin = 0; begin < rows; begin += kBlock) {
-    const int end = std::min(begin + kBlock, rows);
-    Distances(options.type, features1.descriptors, begin, end, features2.descriptors, &distances);
-    for (int i = begin; i < end; ++i) {
-      const int* const distance = distances.ptr<int>(i - begin);
-      for (int j = 0; j < columns; ++j) {
-        of_row[i].Add(j, distance[j]);
-        of_column[j].Add(i, distance[j]);
-      }
-    }
-  }
-
-  std::vector<Match> found;
-  for (int i = 0; i < rows; ++i) {
-    const int j = of_row[i].index;
-    if (of_column[j].index != i) continue;
-    const double score = std::max(of_row[i].Ratio(options.type), of_column[j].Ratio(options.type));
-    if (score <= options.ratio) {
-      found.push_back({camera1, features1.pixels[i], camera2, features2.pixels[j], Rounded(score)});
-    }
-  }
-  const auto key = [](const Match& m) {
-    return std::make_tuple(m.pixel1.x(), m.pixel1.y(), m.pixel2.x(), m.pixel2.y());
-  };
-  std::sort(found.begin(), found.end(), [&](const Match& a, const Match& b) {
-    return std::make_pair(key(a), a.score) < std::make_pair(key(b), b.score);
-  });
-  const auto end = std::unique(found.begin(), found.end(),
-                               [&](const Match& a, const Match& b) { return key(a) == key(b); });
-  matches->insert(matches->end(), found.begin(), end);
 }
 
 }  // namespace rigel

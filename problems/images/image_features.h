@@ -1,16 +1,16 @@
 // Key points of images and their matches.
 //
-// OpenCV may throw; nothing here does: what it throws becomes a message.
+// No function here throws: an exception of OpenCV becomes a message.
 #ifndef RIGEL_PROBLEMS_IMAGES_IMAGE_FEATURES_H_
 #define RIGEL_PROBLEMS_IMAGES_IMAGE_FEATURES_H_
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
 
-#include "rigel/core/match.h"
 #include "rigel/problems/images/image_sequence.h"
 
 namespace rigel {
@@ -18,7 +18,7 @@ namespace rigel {
 enum class FeatureType { kSift, kOrb };
 
 const char* FeatureTypeName(FeatureType type);
-bool ParseFeatureType(const std::string& name, FeatureType* type);
+bool ParseFeatureType(std::string_view name, FeatureType* type);  // "sift", "orb"
 
 struct FeatureOptions {
   FeatureType type = FeatureType::kSift;
@@ -42,11 +42,8 @@ struct ImageFeatures {
 bool ExtractFeatures(const FeatureOptions& options, const ImageCamera& camera,
                      const std::string& path, ImageFeatures* features, std::string* error);
 
-// Appends the matches of two images that are each other's nearest and pass the ratio test; the
-// score is the ratio. Key points of several orientations are one point: a pair of pixels occurs
-// once, with its best score. Sorted by pixels.
-void AppendMatches(const FeatureOptions& options, int camera1, const ImageFeatures& features1,
-                   int camera2, const ImageFeatures& features2, std::vector<Match>* matches);
+// Four decimals: what a pixel or a ratio is accurate to. They keep the files small.
+double RoundedToFile(double value);
 
 }  // namespace rigel
 

@@ -1,5 +1,5 @@
-// Images of a calibrated rig with what is known about each frame: what rigel_match makes match
-// files of.
+// Images of a calibrated rig, with the time and the true pose of each frame: the input of
+// rigel_match.
 #ifndef RIGEL_PROBLEMS_IMAGES_IMAGE_SEQUENCE_H_
 #define RIGEL_PROBLEMS_IMAGES_IMAGE_SEQUENCE_H_
 
@@ -44,8 +44,8 @@ struct ImageFrame {
   std::optional<Pose> world_from_body;  // ground truth
 };
 
-// Frames by their numbers, 0 to size() - 1. Where a data set leaves numbers out there are no
-// frames, and nothing is stored for them.
+// Frames by their numbers, 0 to size() - 1. Numbers that a data set leaves out have no frame and
+// take no memory.
 class ImageFrames {
  public:
   // One more than the last number.
@@ -90,11 +90,11 @@ struct ImageSequence {
   // Where a camera's image of a frame that is not there would be; empty if all are there.
   std::function<std::string(int frame, int camera)> image_path;
   Eigen::Vector3d world_down = Eigen::Vector3d::UnitY();  // unit; the world of world_from_body
-  // Where images of one frame differ in time: how far they may, "default" or milliseconds. Frames
-  // count otherwise with another.
+  // The tolerance if images of one frame differ in time: "default", or milliseconds. It determines
+  // which images are a frame, and so the numbers of the frames.
   std::string sync_tolerance;
-  // What a user should know and is no error: frames left out, frames without ground truth, cameras
-  // that are not used, how far the cameras' time stamps are apart.
+  // Notes for the user that are no errors: frames left out, frames without ground truth, cameras
+  // that are not used, differences of the cameras' time stamps.
   std::vector<std::string> notes;
 };
 

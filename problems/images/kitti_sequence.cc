@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <set>
-#include <system_error>
 
+#include "rigel/problems/io/directory.h"
 #include "rigel/problems/io/kitti_poses.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/parse_number.h"
 #include "rigel/problems/io/printable.h"
 #include "rigel/problems/io/text_lines.h"
 
@@ -39,32 +39,18 @@ int FrameOfImage(const std::string& name) {
   return frame >= 0 && name == ImageName(frame) ? frame : -1;
 }
 
-bool IsDirectory(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored);
-}
-
-bool Exists(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
-
 // The numbers of the images in a camera's folder. False with a message if one is beyond the bound.
 bool AddFrames(const fs::path& directory, std::set<int>* frames, std::string* error) {
-  std::error_code code;
-  fs::directory_iterator entry(directory, code);
-  for (; !code && entry != fs::directory_iterator(); entry.increment(code)) {
-    const std::string name = entry->path().filename().string();
+  std::string too_large;  // the name of an image
+  const auto add = [&](const std::string& name, bool /*is_directory*/) {
     const int frame = FrameOfImage(name);
-    if (frame > kMaxFrame) {
-      *error = PrintablePath((directory / name).string()) + ": expected an image number up to " +
-               std::to_string(kMaxFrame);
-      return false;
-    }
-    if (frame >= 0) frames->insert(frame);
-  }
-  if (!code) return true;
-  *error = PrintablePath(directory.string()) + ": cannot be listed: " + code.message();
+    if (frame > kMaxFrame) too_large = name;
+    if (frame >= 0 && frame <= kMaxFrame) frames->insert(frame);
+  };
+  if (!ListDirectory(directory, add, error)) return false;
+  if (too_large.empty()) return true;
+  *error = Printable((directory / too_large).string()) + ": expected an image number up to " +
+           std::to_string(kMaxFrame);
   return false;
 }
 
@@ -109,7 +95,7 @@ bool ReadCalibration(const std::string& path, const std::array<int, 2>& numbers,
       return candidate.text.compare(0, key.size(), key) == 0;
     });
     if (line == lines.end()) {
-      *error = PrintablePath(path) + ": no line '" + key + "', expected " + key +
+      *error = Printable(path) + ": no line '" + key + "', expected " + key +
                " and the 12 numbers of camera " + std::to_string(number) + "'s 3x4 projection";
       return false;
     }
@@ -148,15 +134,82 @@ std::string Unused(const fs::path& directory, const std::array<int, 2>& used) {
     names += (names.empty() ? "" : ", ") + name;
   }
   if (names.empty()) return "";
-  return PrintablePath(directory.string()) + ": not used: " + names + "; the rig is image_" +
+  return Printable(directory.string()) + ": not used: " + names + "; the rig is image_" +
          std::to_string(used[0]) + " and image_" + std::to_string(used[1]);
 }
 
-// What a file with a line a frame says about a sequence with more frames; empty if it has enough.
+// The note for a file with fewer lines than the sequence has frames; empty if it has enough.
 std::string TooShort(const std::string& path, size_t lines, size_t frames, const char* what) {
   if (lines >= frames) return "";
-  return PrintablePath(path) + ": " + std::to_string(lines) + " lines for " +
-         std::to_string(frames) + " frames; those beyond get no " + what;
+  return Printable(path) + ": " + std::to_string(lines) + " lines for " + std::to_string(frames) +
+         " frames; those beyond get no " + what;
+}
+
+fs::path CameraFolder(const fs::path& directory, int camera) {
+  return directory / ("image_" + std::to_string(camera));
+}
+
+// The grey stereo pair, or the colour pair where there is no grey one.
+bool FindCameras(const fs::path& directory, std::array<int, 2>* cameras, std::string* error) {
+  // Numbers of the folders image_N: those of KITTI's stereo pairs, grey before colour.
+  constexpr std::array<int, 2> kPairs[] = {{0, 1}, {2, 3}};
+  for (const std::array<int, 2>& pair : kPairs) {
+    if (!IsDirectory(CameraFolder(directory, pair[0]))) continue;
+    if (!IsDirectory(CameraFolder(directory, pair[1]))) continue;
+    *cameras = pair;
+    return true;
+  }
+  *error = Printable(directory.string()) +
+           ": expected image_0 and image_1 in it, or image_2 and image_3";
+  return false;
+}
+
+// The frames of which a camera has an image.
+bool FindImages(const fs::path& directory, const std::array<int, 2>& cameras,
+                ImageSequence* sequence, std::string* error) {
+  const std::array<std::string, 2> folders = {CameraFolder(directory, cameras[0]).string(),
+                                              CameraFolder(directory, cameras[1]).string()};
+  std::set<int> frames;
+  for (const std::string& folder : folders) {
+    if (!AddFrames(folder, &frames, error)) return false;
+  }
+  if (frames.empty()) {
+    *error = Printable(folders[0]) + ": no images (000000.png, ...) in it";
+    return false;
+  }
+  sequence->image_path = [folders](int frame, int camera) {
+    return (fs::path(folders[camera]) / ImageName(frame)).string();
+  };
+  for (const int k : frames) {
+    sequence->frames.Add(k, {{sequence->image_path(k, 0), sequence->image_path(k, 1)}, {}, {}});
+  }
+  return true;
+}
+
+// The times of the frames, if the file is there.
+bool AddTimes(const std::string& path, ImageSequence* sequence, std::string* error) {
+  if (!Exists(path)) return true;
+  std::vector<double> times;
+  if (!ReadTimes(path, &times, error)) return false;
+  ImageFrames& frames = sequence->frames;
+  for (const size_t k : frames.numbers()) {
+    if (k < times.size()) frames[k].time = times[k];
+  }
+  sequence->notes.push_back(TooShort(path, times.size(), frames.size(), "time"));
+  return true;
+}
+
+// The poses of the frames, if the file is there.
+bool AddTruth(const std::string& path, ImageSequence* sequence, std::string* error) {
+  if (!Exists(path)) return true;
+  std::vector<Pose> poses;
+  if (!ReadKittiPoses(path, &poses, error)) return false;
+  ImageFrames& frames = sequence->frames;
+  for (const size_t k : frames.numbers()) {
+    if (k < poses.size()) frames[k].world_from_body = poses[k];
+  }
+  sequence->notes.push_back(TooShort(path, poses.size(), frames.size(), "truth"));
+  return true;
 }
 
 }  // namespace
@@ -165,59 +218,22 @@ bool ReadKittiSequence(const std::string& root, const std::string& name, ImageSe
                        std::string* error) {
   const fs::path directory = fs::path(root) / "sequences" / name;
   if (!IsDirectory(directory)) {
-    *error = PrintablePath(directory.string()) +
+    *error = Printable(directory.string()) +
              ": no such directory, expected sequences/NAME of KITTI odometry below the root";
     return false;
   }
   ImageSequence result;
   result.name = name;
-
-  const auto folder = [&](int camera) { return directory / ("image_" + std::to_string(camera)); };
-  std::array<int, 2> cameras = {0, 1};
-  if (!IsDirectory(folder(0)) || !IsDirectory(folder(1))) cameras = {2, 3};
-  if (!IsDirectory(folder(cameras[0])) || !IsDirectory(folder(cameras[1]))) {
-    *error = PrintablePath(directory.string()) +
-             ": expected image_0 and image_1 in it, or image_2 and image_3";
-    return false;
-  }
-  if (!ReadCalibration((directory / "calib.txt").string(), cameras, &result.cameras, error)) {
+  std::array<int, 2> cameras;
+  if (!FindCameras(directory, &cameras, error) ||
+      !ReadCalibration((directory / "calib.txt").string(), cameras, &result.cameras, error)) {
     return false;
   }
   result.notes.push_back(Unused(directory, cameras));
-  std::set<int> frames;
-  for (const int camera : cameras) {
-    if (!AddFrames(folder(camera), &frames, error)) return false;
-  }
-  if (frames.empty()) {
-    *error = PrintablePath(folder(cameras[0]).string()) + ": no images (000000.png, ...) in it";
+  if (!FindImages(directory, cameras, &result, error) ||
+      !AddTimes((directory / "times.txt").string(), &result, error) ||
+      !AddTruth((fs::path(root) / "poses" / (name + ".txt")).string(), &result, error)) {
     return false;
-  }
-  const std::array<std::string, 2> folders = {folder(cameras[0]).string(),
-                                              folder(cameras[1]).string()};
-  result.image_path = [folders](int frame, int camera) {
-    return (fs::path(folders[camera]) / ImageName(frame)).string();
-  };
-  for (const int k : frames) {
-    result.frames.Add(k, {{result.image_path(k, 0), result.image_path(k, 1)}, {}, {}});
-  }
-
-  const std::string times_path = (directory / "times.txt").string();
-  if (Exists(times_path)) {
-    std::vector<double> times;
-    if (!ReadTimes(times_path, &times, error)) return false;
-    for (const size_t k : frames) {
-      if (k < times.size()) result.frames[k].time = times[k];
-    }
-    result.notes.push_back(TooShort(times_path, times.size(), result.frames.size(), "time"));
-  }
-  const std::string poses_path = (fs::path(root) / "poses" / (name + ".txt")).string();
-  if (Exists(poses_path)) {
-    std::vector<Pose> poses;
-    if (!ReadKittiPoses(poses_path, &poses, error)) return false;
-    for (const size_t k : frames) {
-      if (k < poses.size()) result.frames[k].world_from_body = poses[k];
-    }
-    result.notes.push_back(TooShort(poses_path, poses.size(), result.frames.size(), "truth"));
   }
   result.notes.erase(std::remove(result.notes.begin(), result.notes.end(), ""), result.notes.end());
   *sequence = std::move(result);

@@ -18,12 +18,11 @@
 
 namespace rigel {
 
-// Line k of times.txt and of the poses is that of frame k: a blank line or a comment among them is
-// refused. Cameras beside the two that are used are told in the notes.
+// Line k of times.txt and of the poses belongs to frame k: blank lines and comments between them
+// are refused. Cameras that are not used are listed in the notes.
 //
-// Frames count to the highest number of an image, 10 million at most; there are those of which a
-// camera has an image.
-// False with a message that names the file, and the line where there is one.
+// The numbers of frames are those of the images, at most 10 million. A frame exists if a camera has
+// an image of it. False with a message that names the file, and the line if there is one.
 bool ReadKittiSequence(const std::string& root, const std::string& name, ImageSequence* sequence,
                        std::string* error);
 

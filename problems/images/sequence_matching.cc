@@ -1,50 +1,29 @@
 #include "rigel/problems/images/sequence_matching.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <initializer_list>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <set>
-#include <system_error>
 #include <utility>
 
 #include "rigel/core/parallel.h"
-#include "rigel/problems/io/csv.h"
+#include "rigel/problems/images/feature_matching.h"
+#include "rigel/problems/images/match_directory.h"
+#include "rigel/problems/io/directory.h"
 #include "rigel/problems/io/exception_message.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/printable.h"
-#include "rigel/problems/io/text_lines.h"
-#include "rigel/problems/io/whole_file.h"
 
 namespace rigel {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kSuffix[] = ".matches";
-constexpr char kSettingsName[] = "rigel_match.settings";
-
-struct FrameIndices {
-  int frame1, frame2;
-
-  std::string FileName() const {
-    char name[64];
-    std::snprintf(name, sizeof(name), "%06d-%06d%s", frame1, frame2, kSuffix);
-    return name;
-  }
-};
-
-bool Exists(const std::string& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
-
-// The features of a frame while pairs need them: extracted by the first that asks, forgotten after
-// the last.
+// The features of a frame while pairs need them: extracted at the first use, released after the
+// last.
 class FrameFeatures {
  public:
   void AddUse() { ++uses_; }
@@ -122,132 +101,11 @@ bool AddMatches(const FeatureOptions& options, const std::vector<ImageFeatures>&
   return true;
 }
 
-std::string NumbersText(std::initializer_list<double> numbers) {
-  std::string text;
-  for (const double number : numbers) text += " " + CsvNumber(number);
-  return text + "\n";
-}
-
-// What the files of a directory must agree in: the options, and what the data set says, which may
-// change between two runs. Where the data set lies is no part of it.
-std::string SettingsText(const SequenceMatchingOptions& options, const ImageSequence& sequence) {
-  std::string text = "sequence " + sequence.name + "\nstride " + std::to_string(options.stride) +
-                     "\nfeatures " + FeatureTypeName(options.features.type) + "\nmax_features " +
-                     std::to_string(options.features.max_features) + "\nratio " +
-                     CsvNumber(options.features.ratio) + "\n";
-  const auto any = [&](const auto& has) {
-    return std::any_of(sequence.frames.begin(), sequence.frames.end(), has) ? "yes\n" : "no\n";
-  };
-  text += std::string("truth ") +
-          any([](const ImageFrame& frame) { return frame.world_from_body.has_value(); });
-  text +=
-      std::string("times ") + any([](const ImageFrame& frame) { return frame.time.has_value(); });
-  if (!sequence.sync_tolerance.empty()) {
-    text += "sync_tolerance_ms " + sequence.sync_tolerance + "\n";
-  }
-  for (size_t k = 0; k < sequence.cameras.size(); ++k) {
-    const RigCamera& camera = sequence.cameras[k].camera;
-    const PinholeCamera& c = camera.intrinsics;
-    const Eigen::Matrix3d& Q = camera.Q;
-    const std::string name = "camera " + std::to_string(k);
-    text += name + " focal" + NumbersText({c.fx, c.fy});
-    text += name + " centre" + NumbersText({c.cx, c.cy});
-    for (int row = 0; row < 3; ++row) {
-      text += name + " row " + std::to_string(row) +
-              NumbersText({Q(row, 0), Q(row, 1), Q(row, 2), camera.s[row]});
-    }
-    if (sequence.cameras[k].distortion) {
-      const RadialTangential& d = *sequence.cameras[k].distortion;
-      text += name + " distortion" + NumbersText({d.k1, d.k2, d.p1, d.p2});
-    }
-  }
-  return text;
-}
-
-bool SameSettings(const fs::path& path, const std::string& text, std::string* error) {
-  std::vector<TextLine> lines;
-  if (!ReadTextLines(path.string(), &lines, error)) {
-    *error += "; without it --resume cannot know what the match files beside it were made with";
-    return false;
-  }
-  size_t begin = 0;
-  for (size_t k = 0; begin < text.size() || k < lines.size(); ++k) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string now = text.substr(begin, end - begin);
-    if (k >= lines.size() || lines[k].text != now) {
-      *error = PrintablePath(path.string()) + ": the match files beside it were made with " +
-               (k < lines.size() ? Quoted(lines[k].text) : "other settings") + ", this run has " +
-               (now.empty() ? "no such line" : Quoted(now)) + "; name another directory";
-      return false;
-    }
-    begin = std::min(end + 1, text.size());
-  }
-  return true;
-}
-
-// Makes the directory ready for the run. *kept are the names of its complete files.
-bool PrepareDirectory(const SequenceMatchingOptions& options, const ImageSequence& sequence,
-                      const std::vector<FrameIndices>& pairs, const std::string& directory,
-                      std::set<std::string>* kept, std::string* error) {
-  std::error_code code;
-  fs::create_directories(directory, code);
-  if (code) {
-    *error = PrintablePath(directory) + ": cannot be made: " + code.message();
-    return false;
-  }
-  std::set<std::string> own, there, others;
-  for (const FrameIndices& indices : pairs) own.insert(indices.FileName());
-  fs::directory_iterator entry(directory, code);
-  for (; !code && entry != fs::directory_iterator(); entry.increment(code)) {
-    const std::string name = entry->path().filename().string();
-    std::error_code ignored;
-    if (entry->is_directory(ignored)) continue;
-    if (IsMatchFileName(name)) {
-      (own.count(name) > 0 ? there : others).insert(name);
-    }
-  }
-  if (code) {
-    *error = PrintablePath(directory) + ": cannot be listed: " + code.message();
-    return false;
-  }
-  const auto holds = [&](const std::set<std::string>& names) {
-    return PrintablePath(directory) + ": holds " + PrintablePath(*names.begin()) +
-           (names.size() > 1 ? " and " + std::to_string(names.size() - 1) + " more" : "");
-  };
-  if (!others.empty()) {
-    *error = holds(others) +
-             ", which would be read as if it were of this run; empty the directory or name another";
-    return false;
-  }
-  if (!there.empty() && !options.resume) {
-    *error = holds(there) + "; --resume continues that run, or name another directory";
-    return false;
-  }
-  const fs::path settings = fs::path(directory) / kSettingsName;
-  const std::string text = SettingsText(options, sequence);
-  if (!there.empty()) {
-    if (!SameSettings(settings, text, error)) return false;
-  } else if (!WriteWholeFile(settings.string(), text, error)) {
-    return false;
-  }
-  RemoveLeftOvers(directory, [](const std::string& name) {
-    return IsMatchFileName(name) || name == kSettingsName;
-  });
-  for (const std::string& name : there) {
-    FramePair ignored;
-    std::string broken;
-    if (ReadMatchFile((fs::path(directory) / name).string(), &ignored, &broken)) {
-      kept->insert(name);
-    }
-  }
-  return true;
-}
-
 // Those pairs of the range of which a frame is there; *num_pairs is the number of all.
 bool ListPairs(const SequenceMatchingOptions& options, const ImageSequence& sequence,
                std::vector<FrameIndices>* pairs, int* num_pairs, std::string* error) {
   const int num_frames = static_cast<int>(sequence.frames.size());
-  const std::string has = "sequence " + PrintablePath(sequence.name) + " has " +
+  const std::string has = "sequence " + Printable(sequence.name) + " has " +
                           std::to_string(num_frames) + (num_frames == 1 ? " frame" : " frames") +
                           ", 0 to " + std::to_string(num_frames - 1);
   const int last = options.last < 0 ? num_frames - 1 : options.last;
@@ -271,6 +129,94 @@ bool ListPairs(const SequenceMatchingOptions& options, const ImageSequence& sequ
   if (pairs->empty()) *error = "no pair of frames in the range: " + has;
   return !pairs->empty();
 }
+
+// Notes the ends of the range without an image, and how many of its pairs have none; `num_pairs` of
+// them have some.
+void NoteMissingImages(const SequenceMatchingOptions& options, const ImageSequence& sequence,
+                       size_t num_pairs, SequenceMatchingSummary* summary) {
+  const int end = options.first + summary->num_pairs * options.stride;
+  for (const auto& [frame, which] : {std::pair(options.first, "first"), std::pair(end, "last")}) {
+    const ImageFrame* const there = sequence.frames.Find(frame);
+    if (there != nullptr && std::any_of(there->images.begin(), there->images.end(), Exists)) {
+      continue;
+    }
+    summary->notes.push_back("frame " + std::to_string(frame) + ", the " + which +
+                             " of the range, has no images");
+  }
+  const int without = summary->num_pairs - static_cast<int>(num_pairs);
+  if (without > 0) {
+    summary->notes.push_back(std::to_string(without) + (without == 1 ? " pair" : " pairs") +
+                             " of the range have no image at all");
+  }
+}
+
+// Matches pairs of frames and writes their files. Match() may run on several threads, each pair
+// once.
+class PairMatcher {
+ public:
+  PairMatcher(const FeatureOptions& options, const ImageSequence& sequence, std::string directory,
+              const std::vector<FrameIndices>& pairs)
+      : options_(options),
+        sequence_(sequence),
+        directory_(std::move(directory)),
+        pairs_(pairs),
+        errors_(pairs.size()),
+        written_(pairs.size(), 0) {
+    for (const FrameIndices& pair : pairs) {
+      frames_[pair.frame1].AddUse();
+      frames_[pair.frame2].AddUse();
+    }
+  }
+
+  void Match(int k) {
+    const FrameIndices& indices = pairs_[k];
+    const std::string path = (fs::path(directory_) / indices.FileName()).string();
+    // No exception may leave a thread, not even that of an image too large for the memory.
+    try {
+      written_[k] = Write(indices, path, &errors_[k]) ? 1 : 0;
+    } catch (const std::exception& exception) {
+      errors_[k] = Printable(path) + ": not written: " + ExceptionMessage(exception);
+    }
+    frames_.at(indices.frame1).Release();
+    frames_.at(indices.frame2).Release();
+  }
+
+  // What was written and what failed; after the last Match().
+  void Report(SequenceMatchingSummary* summary) const {
+    for (const auto& [number, frame] : frames_) {
+      summary->missing.insert(summary->missing.end(), frame.missing().begin(),
+                              frame.missing().end());
+      summary->errors.insert(summary->errors.end(), frame.errors().begin(), frame.errors().end());
+    }
+    for (size_t k = 0; k < pairs_.size(); ++k) {
+      summary->written += written_[k];
+      if (!errors_[k].empty()) summary->errors.push_back(errors_[k]);
+    }
+  }
+
+ private:
+  // False without a message if the images of a frame cannot be used: the frame has it.
+  bool Write(const FrameIndices& indices, const std::string& path, std::string* error) {
+    const auto features1 = frames_.at(indices.frame1).Get(options_, sequence_, indices.frame1);
+    const auto features2 = frames_.at(indices.frame2).Get(options_, sequence_, indices.frame2);
+    if (features1 == nullptr || features2 == nullptr) return false;
+    FramePair pair = MakePair(sequence_, indices);
+    std::string what;
+    if (!AddMatches(options_, *features1, *features2, &pair, &what)) {
+      *error = Printable(path) + ": not written: " + what;
+      return false;
+    }
+    return WriteMatchFile(path, pair, error);
+  }
+
+  const FeatureOptions& options_;
+  const ImageSequence& sequence_;
+  const std::string directory_;
+  const std::vector<FrameIndices>& pairs_;
+  std::map<int, FrameFeatures> frames_;
+  std::vector<std::string> errors_;
+  std::vector<char> written_;
+};
 
 }  // namespace
 
@@ -303,19 +249,7 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
       !PrepareDirectory(options, sequence, pairs, directory, &kept, error)) {
     return false;
   }
-  const int end = options.first + summary->num_pairs * options.stride;
-  for (const auto& [frame, which] : {std::pair(options.first, "first"), std::pair(end, "last")}) {
-    const ImageFrame* const there = sequence.frames.Find(frame);
-    if (there != nullptr && std::any_of(there->images.begin(), there->images.end(), Exists))
-      continue;
-    summary->notes.push_back("frame " + std::to_string(frame) + ", the " + which +
-                             " of the range, has no images");
-  }
-  const int without = summary->num_pairs - static_cast<int>(pairs.size());
-  if (without > 0) {
-    summary->notes.push_back(std::to_string(without) + (without == 1 ? " pair" : " pairs") +
-                             " of the range have no image at all");
-  }
+  NoteMissingImages(options, sequence, pairs.size(), summary);
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
                              [&](const FrameIndices& p) { return kept.count(p.FileName()) > 0; }),
               pairs.end());
@@ -323,55 +257,19 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
   const int todo = static_cast<int>(pairs.size());
   begin(todo);
 
-  std::map<int, FrameFeatures> frames;
-  for (const FrameIndices& pair : pairs) {
-    frames[pair.frame1].AddUse();
-    frames[pair.frame2].AddUse();
-  }
-  std::vector<std::string> errors(todo);
-  std::vector<char> written(todo, 0);
-  const auto match = [&](int k) {
-    const FrameIndices& indices = pairs[k];
-    const std::string path = (fs::path(directory) / indices.FileName()).string();
-    // Nothing may leave a thread, not even that there is no memory for an image.
-    try {
-      const auto features1 =
-          frames.at(indices.frame1).Get(options.features, sequence, indices.frame1);
-      const auto features2 =
-          frames.at(indices.frame2).Get(options.features, sequence, indices.frame2);
-      if (features1 != nullptr && features2 != nullptr) {
-        FramePair pair = MakePair(sequence, indices);
-        std::string what;
-        if (!AddMatches(options.features, *features1, *features2, &pair, &what)) {
-          errors[k] = PrintablePath(path) + ": not written: " + what;
-        } else {
-          written[k] = WriteMatchFile(path, pair, &errors[k]) ? 1 : 0;
-        }
-      }
-    } catch (const std::exception& exception) {
-      errors[k] = PrintablePath(path) + ": not written: " + ExceptionMessage(exception);
-    }
-    frames.at(indices.frame1).Release();
-    frames.at(indices.frame2).Release();
-    step();
-  };
-  // Neighbours are worked on by one thread, which has extracted the frame that they share; with a
-  // thread for each pair the second would wait for it.
+  PairMatcher matcher(options.features, sequence, directory, pairs);
+  // Pairs that one thread takes in turn. Neighbours share a frame: on two threads, the second would
+  // wait until the first has extracted it.
   constexpr int kMaxRun = 8;
   const int threads = std::max(options.num_threads, 1);
   const int run = std::clamp((todo + threads - 1) / threads, 1, kMaxRun);
   ParallelFor((todo + run - 1) / run, threads, [&](int r) {
-    for (int k = r * run; k < std::min((r + 1) * run, todo); ++k) match(k);
+    for (int k = r * run; k < std::min((r + 1) * run, todo); ++k) {
+      matcher.Match(k);
+      step();
+    }
   });
-
-  for (const auto& [number, frame] : frames) {
-    summary->missing.insert(summary->missing.end(), frame.missing().begin(), frame.missing().end());
-    summary->errors.insert(summary->errors.end(), frame.errors().begin(), frame.errors().end());
-  }
-  for (int k = 0; k < todo; ++k) {
-    summary->written += written[k];
-    if (!errors[k].empty()) summary->errors.push_back(errors[k]);
-  }
+  matcher.Report(summary);
   return true;
 }
 

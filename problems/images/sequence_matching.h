@@ -28,19 +28,19 @@ struct SequenceMatchingSummary {
   int num_pairs = 0;  // those of the range
   int written = 0;
   int kept = 0;  // were there already
-  // One line an image that is not there (of pairs that have none at all there is only their number,
-  // in `notes`), an image that could not be used or a file that could not
-  // be written, in order. The pairs that they touch are neither written nor kept; all others are.
+  // One line for each missing image, and one for each image that could not be used or file that
+  // could not be written, in order. Pairs with such images are neither written nor kept. Of pairs
+  // without any image `notes` has the number.
   std::vector<std::string> missing;
   std::vector<std::string> errors;
-  // The ends of the range that have no image at all, and how many pairs have none.
+  // The ends of the range without an image, and the number of pairs without any.
   std::vector<std::string> notes;
 };
 
-// Writes DIRECTORY/000020-000021.matches, ..., named after the frames, each complete or not there
-// at all. The directory is made if missing; DIRECTORY/rigel_match.settings says what the files were
-// made with. Without `resume` a directory that has match files is refused, and always one with
-// match files that are not of this run: they would be read as if they were.
+// Writes DIRECTORY/000020-000021.matches, ..., named after the frames, each complete or absent. The
+// directory is created if necessary. DIRECTORY/rigel_match.settings has the settings of the run. A
+// directory with match files of another run is refused, as other programs would read them as files
+// of this run. Without `resume` any directory with match files is refused.
 //
 // `begin` is called with the number of pairs to do before the first, `step` after each, from any
 // thread. False with a message, and nothing done, if the range is not in the sequence or the

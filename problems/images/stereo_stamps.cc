@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "rigel/core/median.h"
+
 namespace rigel {
 namespace {
 
@@ -21,9 +23,7 @@ int64_t DefaultSyncTolerance(const Stamps& stamps) {
   if (stamps.size() < 2) return 0;
   std::vector<int64_t> intervals;
   for (size_t k = 1; k < stamps.size(); ++k) intervals.push_back(stamps[k] - stamps[k - 1]);
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle / 10;
+  return MedianInPlace(&intervals) / 10;
 }
 
 std::vector<std::pair<int, int>> PairStamps(const Stamps& stamps1, const Stamps& stamps2,

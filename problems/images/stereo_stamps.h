@@ -1,4 +1,4 @@
-// Images of two cameras that are of one moment, by their time stamps.
+// Pairs the images of two cameras by their time stamps.
 #ifndef RIGEL_PROBLEMS_IMAGES_STEREO_STAMPS_H_
 #define RIGEL_PROBLEMS_IMAGES_STEREO_STAMPS_H_
 
@@ -14,8 +14,8 @@ using Stamps = std::vector<int64_t>;
 // A tenth of the median interval; 0 of less than two stamps.
 int64_t DefaultSyncTolerance(const Stamps& stamps);
 
-// Indices of stamps that are each other's nearest, the earlier of two that are as near, and no
-// further apart than `tolerance`. In order; each stamp once at most.
+// Indices of stamps that are nearest to each other and differ by at most `tolerance`; of two that
+// are equally near the earlier one. In order; each stamp at most once.
 std::vector<std::pair<int, int>> PairStamps(const Stamps& stamps1, const Stamps& stamps2,
                                             int64_t tolerance);
 

@@ -2,10 +2,15 @@
 
 #include <new>
 #include <stdexcept>
+#include <system_error>
 
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
 
 namespace rigel {
+
+std::string SystemMessage(int error_number) {
+  return std::generic_category().message(error_number);
+}
 
 std::string ExceptionMessage(const std::exception& exception) {
   const std::string message = exception.what();
@@ -15,7 +20,7 @@ std::string ExceptionMessage(const std::exception& exception) {
       message.find("Insufficient memory") != std::string::npos) {
     return "not enough memory";
   }
-  return PrintablePath(message);
+  return Printable(message);
 }
 
 }  // namespace rigel

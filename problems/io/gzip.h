@@ -10,12 +10,12 @@
 
 namespace rigel {
 
-// Whether the bytes begin as those that gzip writes; no text does.
+// True if the bytes begin with the magic number of gzip. No text does.
 bool IsGzip(std::string_view bytes);
 
-// Appends what `compressed` holds, one member or several, to `bytes`, which is empty; stops behind
-// a NUL, which no text has. False with what is wrong if it is cut off or damaged, holds more than
-// max_bytes or more than there is memory for.
+// Decompresses one or several members into `bytes`, which is empty. Ends after a NUL byte, which no
+// text has. False with what is wrong if the data is cut off or damaged, or holds more than
+// max_bytes or more than the memory.
 bool Gunzip(std::string_view compressed, size_t max_bytes, InputBytes* bytes, std::string* what);
 
 // The same text gives the same bytes. Empty if there is no memory for it.

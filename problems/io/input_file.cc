@@ -7,18 +7,17 @@
 #include <filesystem>
 #include <system_error>
 
+#include "rigel/problems/io/exception_message.h"
 #include "rigel/problems/io/gzip.h"
 #include "rigel/problems/io/printable.h"
 
 namespace rigel {
 namespace {
 
-constexpr size_t kFirstRoom = size_t{1} << 16;  // where nothing tells the size
-constexpr size_t kPiece = size_t{1} << 20;      // read at a time: a NUL byte ends it early
-
-std::string SystemMessage(int error_number) {
-  return std::generic_category().message(error_number);
-}
+// Bytes reserved first if the size is unknown, as of a pipe: a usual match file.
+constexpr size_t kFirstRoom = size_t{1} << 16;
+// Bytes read at a time. After each piece a NUL byte ends the reading.
+constexpr size_t kPiece = size_t{1} << 20;
 
 std::string BytesText(size_t bytes) {
   // Bytes: limits are told in GiB.
@@ -43,15 +42,18 @@ class OpenFile {
   std::FILE* file_;
 };
 
-// False with what is wrong. `size` is a hint that saves copies: pipes have none, and files may grow
-// meanwhile.
-bool ReadAll(std::FILE* file, size_t size, size_t max_bytes, InputBytes* bytes, std::string* what) {
+enum class Contents { kText, kAnything };
+
+// Of text it stops behind a NUL byte, unless gzip made it. False with what is wrong. `size` is a
+// hint that saves copies: pipes have none, and files may grow meanwhile.
+bool ReadAll(std::FILE* file, Contents contents, size_t size, size_t max_bytes, InputBytes* bytes,
+             std::string* what) {
   const std::string no_memory = "cannot be read: not enough memory for it";
   if (!bytes->Reserve(size + 1)) {
     *what = no_memory;
     return false;
   }
-  bool compressed = false;
+  bool may_have_nul = contents == Contents::kAnything;
   for (;;) {
     if (bytes->room() == 0 && !bytes->Grow(max_bytes + 1)) {
       *what = no_memory;
@@ -65,12 +67,40 @@ bool ReadAll(std::FILE* file, size_t size, size_t max_bytes, InputBytes* bytes, 
       *what = "more than " + BytesText(max_bytes) + ", expected no more";
       return false;
     }
-    compressed = compressed || IsGzip(bytes->text());
-    if (!compressed && std::memchr(begin, 0, count) != nullptr) return true;
+    may_have_nul = may_have_nul || IsGzip(bytes->text());
+    if (!may_have_nul && std::memchr(begin, 0, count) != nullptr) return true;
   }
   if (std::ferror(file) == 0) return true;
   *what = "cannot be read: " + SystemMessage(errno);
   return false;
+}
+
+bool Fail(const std::string& path, const std::string& what, std::string* error) {
+  *error = Printable(InputName(path)) + ": " + what;
+  return false;
+}
+
+bool ReadFile(const std::string& path, Contents contents, size_t max_bytes, InputBytes* bytes,
+              std::string* error) {
+  *bytes = InputBytes();
+  const OpenFile file(path);
+  if (file.get() == nullptr) {
+    return Fail(path, "cannot be opened: " + SystemMessage(errno), error);
+  }
+  size_t size = kFirstRoom;
+  if (path != "-") {
+    std::error_code no_size;
+    const uintmax_t stated = std::filesystem::file_size(path, no_size);
+    if (!no_size && stated > max_bytes) {
+      return Fail(path,
+                  std::to_string(stated) + " bytes, expected no more than " + BytesText(max_bytes),
+                  error);
+    }
+    if (!no_size) size = static_cast<size_t>(stated);
+  }
+  std::string what;
+  return ReadAll(file.get(), contents, std::min(size, max_bytes), max_bytes, bytes, &what) ||
+         Fail(path, what, error);
 }
 
 }  // namespace
@@ -93,29 +123,17 @@ std::string InputName(const std::string& path) { return path == "-" ? "stdin" : 
 
 bool ReadInputFile(const std::string& path, InputBytes* bytes, std::string* error,
                    size_t max_bytes) {
-  *bytes = InputBytes();
-  const auto fail = [&](const std::string& what) {
-    *error = Printable(InputName(path)) + ": " + what;
-    return false;
-  };
-  const OpenFile file(path);
-  if (file.get() == nullptr) return fail("cannot be opened: " + SystemMessage(errno));
-  size_t size = kFirstRoom;
-  if (path != "-") {
-    std::error_code no_size;
-    const uintmax_t stated = std::filesystem::file_size(path, no_size);
-    if (!no_size && stated > max_bytes) {
-      return fail(std::to_string(stated) + " bytes, expected no more than " + BytesText(max_bytes));
-    }
-    if (!no_size) size = static_cast<size_t>(stated);
-  }
-  std::string what;
-  if (!ReadAll(file.get(), std::min(size, max_bytes), max_bytes, bytes, &what)) return fail(what);
+  if (!ReadFile(path, Contents::kText, max_bytes, bytes, error)) return false;
   if (!IsGzip(bytes->text())) return true;
   InputBytes plain;
-  if (!Gunzip(bytes->text(), max_bytes, &plain, &what)) return fail(what);
+  std::string what;
+  if (!Gunzip(bytes->text(), max_bytes, &plain, &what)) return Fail(path, what, error);
   *bytes = std::move(plain);
   return true;
+}
+
+bool ReadBytes(const std::string& path, InputBytes* bytes, std::string* error, size_t max_bytes) {
+  return ReadFile(path, Contents::kAnything, max_bytes, bytes, error);
 }
 
 bool CheckText(std::string_view* text, int64_t* line, std::string* what) {
@@ -129,8 +147,7 @@ bool CheckText(std::string_view* text, int64_t* line, std::string* what) {
   if (text->substr(0, kByteOrderMark.size()) == kByteOrderMark) {
     text->remove_prefix(kByteOrderMark.size());
   }
-  // UTF-16 without a mark and most binary files are told here, in plain words, even where the byte
-  // would hide in a comment.
+  // Finds UTF-16 without a mark and most binary files, also where the NUL is in a comment.
   const size_t nul = text->find('\0');
   if (nul == std::string_view::npos) return true;
   *line = 1 + std::count(text->begin(), text->begin() + static_cast<ptrdiff_t>(nul), '\n');

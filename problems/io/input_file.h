@@ -1,4 +1,5 @@
-// The bytes of text files that a program is given: plain, compressed by gzip, or from stdin.
+// The bytes of files that a program is given: text, plain, compressed by gzip or from stdin, and
+// other files as they are.
 #ifndef RIGEL_PROBLEMS_IO_INPUT_FILE_H_
 #define RIGEL_PROBLEMS_IO_INPUT_FILE_H_
 
@@ -11,7 +12,7 @@
 
 namespace rigel {
 
-// What is larger, as it lies there or when decompressed, is refused: no table of a user's is.
+// Bytes. A larger file, compressed or decompressed, is refused: it bounds the memory.
 inline constexpr size_t kMaxInputBytes = size_t{2} << 30;
 
 // Bytes that are not cleared before they are filled.
@@ -28,8 +29,8 @@ class InputBytes {
   // Room for `capacity` bytes in all. False if there is no memory for it.
   bool Reserve(size_t capacity);
 
-  // Room for one more byte at least, and for no more than `max` in all, of which there are fewer
-  // yet. False if there is no memory for it.
+  // Makes room for at least one more byte, and at most `max` in all; size() < max. False if there
+  // is no memory for it.
   bool Grow(size_t max);
 
  private:
@@ -44,14 +45,18 @@ class InputBytes {
 // The path as messages name it: "-" is stdin.
 std::string InputName(const std::string& path);
 
-// Reads a file, or stdin if the path is "-", and decompresses what gzip made. Stops behind a NUL,
-// which no text has: CheckText() then tells it. False with a message, one line, if it cannot be
-// read, is damaged, or is larger than max_bytes or than the memory.
+// Reads a text file, or stdin if the path is "-", and decompresses gzip data. Reading ends after a
+// NUL byte, which no text has: CheckText() then reports it. False with a message of one line if the
+// file cannot be read, is damaged, or is larger than max_bytes or than the memory.
 bool ReadInputFile(const std::string& path, InputBytes* bytes, std::string* error,
                    size_t max_bytes = kMaxInputBytes);
 
-// Takes the byte order mark of UTF-8 off. False, with what there is instead and in which line (0:
-// in none), if the text is that of another encoding, or no text.
+// Reads a file as it is: nothing is decompressed, a NUL byte is one of many. False with a message
+// as above.
+bool ReadBytes(const std::string& path, InputBytes* bytes, std::string* error, size_t max_bytes);
+
+// Removes the byte order mark of UTF-8. False if the text has another encoding or is no text: *what
+// says what was found, *line where (0: no line).
 bool CheckText(std::string_view* text, int64_t* line, std::string* what);
 
 }  // namespace rigel

@@ -1,4 +1,4 @@
-// What the JSON library says, in words for people.
+// Error messages of the JSON library, for users.
 #ifndef RIGEL_PROBLEMS_IO_JSON_MESSAGE_H_
 #define RIGEL_PROBLEMS_IO_JSON_MESSAGE_H_
 
@@ -8,7 +8,7 @@
 namespace rigel {
 
 // The message without "[json.exception.NAME.NUMBER] ", shortened in the middle if it is long, and
-// printable: it quotes the file.
+// printable, as it quotes the file.
 std::string JsonMessage(const std::exception& exception);
 
 }  // namespace rigel

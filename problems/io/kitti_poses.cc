@@ -5,13 +5,13 @@
 #include <string_view>
 #include <utility>
 
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/parse_number.h"
+#include "rigel/problems/io/printable.h"
+#include "rigel/problems/io/rotation_check.h"
 #include "rigel/problems/io/text_lines.h"
 
 namespace rigel {
 namespace {
-
-constexpr double kMaxRotationError = 1e-3;  // of any element of R'R - I
 
 // False with what is wrong.
 bool ParsePose(std::string_view line, Pose* pose, std::string* error) {
@@ -19,7 +19,8 @@ bool ParsePose(std::string_view line, Pose* pose, std::string* error) {
   const std::vector<std::string_view> words = SplitAtBlanks(line);
   for (size_t k = 0; k < std::min(words.size(), m.size()); ++k) {
     if (!ParseFinite(words[k], &m[k])) {
-      *error = "number " + std::to_string(k + 1) + " is not a finite number";
+      *error = "number " + std::to_string(k + 1) + " is " + Quoted(words[k]) +
+               ", expected a finite number";
       return false;
     }
   }
@@ -29,9 +30,8 @@ bool ParsePose(std::string_view line, Pose* pose, std::string* error) {
   }
   Eigen::Matrix3d R;
   R << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
-  const Eigen::Matrix3d off = R.transpose() * R - Eigen::Matrix3d::Identity();
-  if (!(off.cwiseAbs().maxCoeff() <= kMaxRotationError) || !(R.determinant() > 0)) {
-    *error = "the first three columns are not a rotation";
+  if (!IsRotation(R)) {
+    *error = "the first three columns are not a rotation, expected R'R = I within 0.001";
     return false;
   }
   *pose = Pose::FromQuaternion(Eigen::Quaterniond(R), {m[3], m[7], m[11]});
@@ -55,7 +55,7 @@ bool ReadKittiPoses(const std::string& path, std::vector<Pose>* world_from_camer
     poses.push_back(pose);
   }
   if (poses.empty()) {
-    *error = PrintablePath(path) + ": there is no pose in it";
+    *error = Printable(path) + ": there is no pose in it";
     return false;
   }
   *world_from_camera = std::move(poses);

@@ -12,9 +12,9 @@
 
 namespace rigel {
 
-// Rotations off orthonormal by up to 1e-3 are made orthonormal. False with a message that names
-// file and line if the file cannot be read, has no pose or is not of the format: line k is that of
-// frame k, so that there is no comment, and no blank line but at the end.
+// Line k is the pose of frame k. Rotations are made orthonormal; an error of up to 1e-3 is
+// accepted. False with a message that names file and line if the file cannot be read, has no pose
+// or breaks the format. There are no comments, and blank lines only at the end.
 bool ReadKittiPoses(const std::string& path, std::vector<Pose>* world_from_camera,
                     std::string* error);
 

@@ -1,31 +1,33 @@
-// Reader of match files. It goes once over the whole text and keeps no copy of it: a
-// line is split into views, and numbers are converted in place by std::from_chars.
 #include "rigel/problems/io/match_file.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <limits>
 #include <map>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "rigel/core/angles.h"
+#include "rigel/problems/io/gzip.h"
 #include "rigel/problems/io/input_file.h"
+#include "rigel/problems/io/match_file_list.h"
 #include "rigel/problems/io/match_file_words.h"
+#include "rigel/problems/io/match_lines.h"
+#include "rigel/problems/io/match_text.h"
 #include "rigel/problems/io/printable.h"
+#include "rigel/problems/io/whole_file.h"
 
 namespace rigel {
 namespace {
 
 using namespace match_file;
 
-// Directions and quaternions must have unit length to within this.
-constexpr double kMaxNormError = 1e-3;
+constexpr std::string_view kSuffix = ".matches";
+constexpr std::string_view kCompressed = ".gz";
+
+bool EndsWith(std::string_view text, std::string_view end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
 
 constexpr std::string_view kRowUsage = "I U V J U2 V2 SCORE";
 // Words of a row: those of kRowUsage.
@@ -40,30 +42,17 @@ int FindKeyword(std::string_view word) {
   return -1;
 }
 
-// Carriage returns count as blanks, which accepts CRLF line ends.
-bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+bool IsControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
-bool ParseInteger(std::string_view word, int min, int* value) {
-  const char* const end = word.data() + word.size();
-  const auto [stop, status] = std::from_chars(word.data(), end, *value);
-  return status == std::errc() && stop == end && *value >= min;
-}
-
-class Parser {
+class Parser : private MatchLines {
  public:
   Parser(std::string_view text, const std::string& name, std::string* error)
-      : text_(text), name_(name), error_(error) {}
+      : MatchLines(text, name, error) {
+    pair_.name = name;
+  }
 
   bool Parse(FramePair* pair) {
-    std::string what;
-    if (!CheckText(&text_, &line_, &what)) {
-      return Fail(what + ", expected a match file (UTF-8 text)");
-    }
-    line_ = 0;
-    pos_ = text_.data();
-    end_ = pos_ + text_.size();
-    pair_.name = name_;
-    if (!ParseHeader() || !FinishRig() || !ParseRows()) return false;
+    if (!Begin() || !ParseHeader() || !FinishRig() || !ParseRows()) return false;
     *pair = std::move(pair_);
     return true;
   }
@@ -73,95 +62,6 @@ class Parser {
     RigCamera camera;
     int64_t line;
   };
-
-  bool Fail(const std::string& message) {
-    *error_ =
-        PrintablePath(name_) + (line_ > 0 ? ":" + std::to_string(line_) : "") + ": " + message;
-    return false;
-  }
-
-  // Splits the next line that has content into columns_. False at the end of the text; line_ is
-  // then the last line.
-  bool NextLine() {
-    const char* p = pos_;
-    while (p != end_) {
-      ++line_;
-      num_columns_ = 0;
-      for (;;) {
-        while (p != end_ && IsBlank(*p)) ++p;
-        if (p == end_ || *p == '\n') break;
-        if (num_columns_ == 0 && *p == '#') {
-          p = std::find(p, end_, '\n');
-          break;
-        }
-        const char* const word = p;
-        while (p != end_ && *p != '\n' && !IsBlank(*p)) ++p;
-        if (num_columns_ < kMaxColumns) columns_[num_columns_] = {word, size_t(p - word)};
-        ++num_columns_;
-      }
-      if (p != end_) ++p;
-      pos_ = p;
-      if (num_columns_ > 0) return true;
-    }
-    return false;
-  }
-
-  // The usage's word for a column, so that messages name what the format names.
-  std::string ColumnName(size_t column) const {
-    std::string_view rest = usage_;
-    for (size_t k = 0; k < column; ++k) rest.remove_prefix(rest.find(' ') + 1);
-    return std::string(rest.substr(0, rest.find(' ')));
-  }
-
-  bool FailColumn(size_t column, const std::string& expected) {
-    return Fail(ColumnName(column) + " is " + Quoted(columns_[column]) + ", expected " + expected);
-  }
-
-  bool CheckColumns(size_t expected) {
-    if (num_columns_ == expected) return true;
-    return Fail(std::to_string(num_columns_) + (num_columns_ == 1 ? " column" : " columns") +
-                ", expected " + std::to_string(expected) + " (" + std::string(usage_) + ")");
-  }
-
-  bool Number(size_t column, double* value) {
-    if (ParseNumber(columns_[column], value)) return true;
-    return FailColumn(column, "a finite number");
-  }
-
-  bool PositiveNumber(size_t column, double* value) {
-    if (!Number(column, value)) return false;
-    return *value > 0 || FailColumn(column, "a positive number");
-  }
-
-  bool Integer(size_t column, int min, int* value) {
-    if (ParseInteger(columns_[column], min, value)) return true;
-    return FailColumn(column, "an integer from " + std::to_string(min) + " to " +
-                                  std::to_string(std::numeric_limits<int>::max()));
-  }
-
-  // The columns column, column + 1, ... as a vector.
-  template <int kSize, int kOptions>
-  bool Vector(size_t column, Eigen::Matrix<double, kSize, 1, kOptions>* value) {
-    for (int k = 0; k < kSize; ++k) {
-      if (!Number(column + k, &(*value)[k])) return false;
-    }
-    return true;
-  }
-
-  template <int kSize>
-  bool UnitVector(size_t column, const char* what, Eigen::Matrix<double, kSize, 1>* value) {
-    if (!Vector(column, value)) return false;
-    const double norm = value->norm();
-    if (!(std::abs(norm - 1.0) <= kMaxNormError)) {
-      char text[32];
-      std::snprintf(text, sizeof(text), "%.6g", norm);
-      return Fail("the " + std::string(what) + " has norm " + text + ", expected 1 within 0.001");
-    }
-    // What is of unit length but for rounding stays as it is, so that written files read back
-    // exactly.
-    if (std::abs(norm - 1.0) > 1e-14) *value /= norm;
-    return true;
-  }
 
   bool Direction(std::optional<Eigen::Vector3d>* value) {
     Eigen::Vector3d v;
@@ -195,19 +95,19 @@ class Parser {
   }
 
   bool Format() {
-    if (columns_[1] == "rigmatch" && columns_[2] == "1") return true;
-    return Fail("format " + Quoted(columns_[1]) + " version " + Quoted(columns_[2]) +
+    if (Column(1) == "rigmatch" && Column(2) == "1") return true;
+    return Fail("format " + Quoted(Column(1)) + " version " + Quoted(Column(2)) +
                 ", expected 'format rigmatch 1', the version that is read here");
   }
 
   bool Camera() {
     int index;
     if (!Integer(1, 0, &index)) return false;
-    if (columns_[2] != "pinhole") {
-      return Fail("camera model " + Quoted(columns_[2]) + ", expected 'pinhole'");
+    if (Column(2) != "pinhole") {
+      return Fail("camera model " + Quoted(Column(2)) + ", expected 'pinhole'");
     }
     DeclaredCamera declared;
-    declared.line = line_;
+    declared.line = line();
     PinholeCamera& c = declared.camera.intrinsics;
     Pose body_from_camera;
     if (!PositiveNumber(3, &c.fx) || !PositiveNumber(4, &c.fy) || !Number(5, &c.cx) ||
@@ -250,7 +150,7 @@ class Parser {
 
   // The name goes into tables and JSON, which must not break on it.
   bool Sequence() {
-    const std::string_view name = columns_[1];
+    const std::string_view name = Column(1);
     if (std::any_of(name.begin(), name.end(), IsControl) || !IsUtf8(name)) {
       return FailColumn(1, "a name in UTF-8 without control characters");
     }
@@ -302,25 +202,25 @@ class Parser {
   bool ParseHeader() {
     std::array<int64_t, kNumKeywords> seen{};  // line of each keyword
     while (NextLine()) {
-      const int id = FindKeyword(columns_[0]);
+      const int id = FindKeyword(Column(0));
       if (id < 0) {
         if (seen[kFormat] == 0) {
-          return Fail(Quoted(columns_[0]) + ", expected a match file with a line '" +
+          return Fail(Quoted(Column(0)) + ", expected a match file with a line '" +
                       std::string(kKeywords[kFormat].usage) + "'");
         }
         std::string names;
         for (const Keyword& keyword : kKeywords) {
           names += (names.empty() ? "" : ", ") + std::string(keyword.name);
         }
-        return Fail("unknown keyword " + Quoted(columns_[0]) + ", expected one of " + names);
+        return Fail("unknown keyword " + Quoted(Column(0)) + ", expected one of " + names);
       }
       const Keyword& keyword = kKeywords[id];
       if (seen[id] > 0 && id != kCamera) {
         return Fail("'" + std::string(keyword.name) +
                     "' for the second time, expected once (line " + std::to_string(seen[id]) + ")");
       }
-      seen[id] = line_;
-      usage_ = keyword.usage;
+      seen[id] = line();
+      SetUsage(keyword.usage);
       if (id == kMatches && seen[kFormat] == 0) {
         return Fail("no 'format' line before 'matches', expected '" +
                     std::string(kKeywords[kFormat].usage) + "'");
@@ -342,10 +242,9 @@ class Parser {
     }
     for (const auto& [index, declared] : cameras_) {
       if (index != pair_.rig.size()) {
-        line_ = declared.line;
-        return Fail("camera " + std::to_string(index) + " without a camera " +
-                    std::to_string(pair_.rig.size()) +
-                    ", expected cameras numbered 0, 1, ... without a gap");
+        return FailAt(declared.line, "camera " + std::to_string(index) + " without a camera " +
+                                         std::to_string(pair_.rig.size()) +
+                                         ", expected cameras numbered 0, 1, ... without a gap");
       }
       pair_.rig.cameras.push_back(declared.camera);
     }
@@ -359,46 +258,18 @@ class Parser {
                       "a declared camera (0 to " + std::to_string(pair_.rig.size() - 1) + ")");
   }
 
-  // Takes the next line if it is a plain row, as nearly all lines are, without splitting it
-  // first: that is a third faster. Leaves everything else, valid or not, to the general way.
-  bool TakePlainRow(Match* m) {
-    const char* p = pos_;
-    const auto column = [&](auto* value) {
-      while (p != end_ && IsBlank(*p)) ++p;
-      const auto [stop, status] = std::from_chars(p, end_, *value);
-      p = stop;
-      return status == std::errc() && (p == end_ || IsBlank(*p) || *p == '\n');
-    };
-    if (!column(&m->camera1) || !column(&m->pixel1[0]) || !column(&m->pixel1[1]) ||
-        !column(&m->camera2) || !column(&m->pixel2[0]) || !column(&m->pixel2[1]) ||
-        !column(&m->score)) {
-      return false;
-    }
-    while (p != end_ && IsBlank(*p)) ++p;
-    if (p != end_ && *p != '\n') return false;
-    const int num_cameras = pair_.rig.size();
-    if (m->camera1 < 0 || m->camera1 >= num_cameras || m->camera2 < 0 ||
-        m->camera2 >= num_cameras || !m->pixel1.allFinite() || !m->pixel2.allFinite() ||
-        !std::isfinite(m->score)) {
-      return false;
-    }
-    pos_ = p == end_ ? p : p + 1;
-    ++line_;
-    return true;
-  }
-
   bool ParseRows() {
-    usage_ = kRowUsage;
+    SetUsage(kRowUsage);
     // N is only believed as far as the text could hold it.
     const size_t num_rows = static_cast<size_t>(num_matches_);
     std::vector<Match>& matches = pair_.matches;
-    matches.reserve(std::min(num_rows, static_cast<size_t>(end_ - pos_) / kMinRowBytes + 1));
+    matches.reserve(std::min(num_rows, BytesLeft() / kMinRowBytes + 1));
     for (;;) {
       Match m;
-      while (matches.size() < num_rows && TakePlainRow(&m)) matches.push_back(m);
+      while (matches.size() < num_rows && TakePlainRow(pair_.rig.size(), &m)) matches.push_back(m);
       if (!NextLine()) break;
-      if (FindKeyword(columns_[0]) >= 0) {
-        return Fail(Quoted(columns_[0]) + " after 'matches', expected header lines before it");
+      if (FindKeyword(Column(0)) >= 0) {
+        return Fail(Quoted(Column(0)) + " after 'matches', expected header lines before it");
       }
       if (matches.size() == num_rows) {
         return Fail("more rows than 'matches " + std::to_string(num_rows) +
@@ -415,23 +286,14 @@ class Parser {
                 std::to_string(num_rows));
   }
 
-  std::string_view text_;
-  const char* pos_ = nullptr;
-  const char* end_ = nullptr;
-  const std::string& name_;
-  std::string* const error_;
-
-  int64_t line_ = 0;  // from 1
-  std::string_view usage_;
-  std::array<std::string_view, kMaxColumns> columns_;
-  size_t num_columns_ = 0;  // may exceed kMaxColumns; the surplus is not kept
-
   FramePair pair_;
   std::map<int, DeclaredCamera> cameras_;
   int num_matches_ = 0;
 };
 
 }  // namespace
+
+std::string PrintablePath(const std::string& path) { return Printable(path); }
 
 bool ParseMatches(std::string_view text, const std::string& name, FramePair* pair,
                   std::string* error) {
@@ -442,6 +304,105 @@ bool ReadMatchFile(const std::string& path, FramePair* pair, std::string* error)
   InputBytes bytes;
   return ReadInputFile(path, &bytes, error) &&
          ParseMatches(bytes.text(), InputName(path), pair, error);
+}
+
+std::string FormatMatches(const FramePair& pair) {
+  // Bytes to reserve, both of them: a file that has more grows as it is written.
+  constexpr size_t kHeaderBytes = 4096;
+  constexpr size_t kUsualRowBytes = 100;
+  MatchText f(kHeaderBytes + kUsualRowBytes * pair.matches.size());
+  const auto direction = [&f](KeywordId id, const std::optional<Eigen::Vector3d>& v) {
+    if (v) f.Word(kKeywords[id].name).Vector(*v).EndLine();
+  };
+  const auto sigma = [&f](KeywordId id, const std::optional<double>& radians) {
+    if (radians) f.Word(kKeywords[id].name).SigmaDeg(*radians).EndLine();
+  };
+
+  f.Word(kKeywords[kFormat].usage).EndLine();
+  for (int k = 0; k < pair.rig.size(); ++k) {
+    const RigCamera& camera = pair.rig.cameras[k];
+    const PinholeCamera& c = camera.intrinsics;
+    f.Word(kKeywords[kCamera].name).Number(k).Word("pinhole");
+    f.Number(c.fx).Number(c.fy).Number(c.cx).Number(c.cy).Number(c.width).Number(c.height);
+    f.Quaternion(camera.Q).Vector(camera.s).EndLine();
+  }
+  if (pair.time1 && pair.time2) {
+    f.Word(kKeywords[kTime].name).Number(*pair.time1).Number(*pair.time2).EndLine();
+  }
+  if (pair.truth) {
+    f.Word(kKeywords[kTruth].name).Quaternion(pair.truth->R).Vector(pair.truth->t).EndLine();
+  }
+  const MotionPrior& prior = pair.prior;
+  direction(kGravity1, prior.gravity1);
+  direction(kGravity2, prior.gravity2);
+  sigma(kGravitySigma, prior.gravity_sigma);
+  direction(kAxis, prior.axis);
+  sigma(kAxisSigma, prior.axis_sigma);
+  direction(kNormal, prior.normal);
+  sigma(kNormalSigma, prior.normal_sigma);
+  direction(kForward, prior.forward);
+  if (prior.distance) {
+    f.Word(kKeywords[kDistance].name).Number(*prior.distance).Number(prior.distance_sigma);
+    f.EndLine();
+  }
+  if (pair.noise_px) f.Word(kKeywords[kNoise].name).Number(*pair.noise_px).EndLine();
+  if (!pair.sequence.empty()) f.Word(kKeywords[kSequence].name).Word(pair.sequence).EndLine();
+  f.Word(kKeywords[kMatches].name).Number(pair.matches.size()).EndLine();
+  for (const Match& m : pair.matches) {
+    f.Number(m.camera1).Vector(m.pixel1).Number(m.camera2).Vector(m.pixel2).Number(m.score);
+    f.EndLine();
+  }
+  return f.Take();
+}
+
+std::string MatchFileBytes(const std::string& path, const std::string& text) {
+  const bool compressed = path.size() > kCompressed.size() && EndsWith(path, kCompressed);
+  return compressed ? Gzip(text) : text;
+}
+
+bool WriteMatchFile(const std::string& path, const FramePair& pair, std::string* error) {
+  const std::string text = FormatMatches(pair);
+  // Reading it back costs little and finds everything a reader would reject.
+  const std::string refusal = path + ": not written, it could not be read back";
+  FramePair read;
+  if (!ParseMatches(text, refusal, &read, error)) return false;
+  if (read.time1 != pair.time1 || read.time2 != pair.time2) {
+    *error = Printable(refusal) + ": one time is missing, expected both or none";
+    return false;
+  }
+  if (read.sequence != pair.sequence) {
+    *error = Printable(refusal) + ": sequence " + Quoted(pair.sequence) +
+             ", expected a name without blanks";
+    return false;
+  }
+  return WriteWholeFile(path, MatchFileBytes(path, text), error);
+}
+
+bool IsMatchFileName(const std::string& name) {
+  std::string_view plain = name;
+  if (EndsWith(plain, kCompressed)) plain.remove_suffix(kCompressed.size());
+  return plain.size() > kSuffix.size() && EndsWith(plain, kSuffix);
+}
+
+std::vector<std::string> ListMatchFiles(const std::string& comma_separated,
+                                        std::vector<std::string>* errors,
+                                        std::vector<std::string>* notes) {
+  MatchFileList list;
+  for (size_t begin = 0; begin <= comma_separated.size();) {
+    const size_t comma = std::min(comma_separated.find(',', begin), comma_separated.size());
+    const std::string item = comma_separated.substr(begin, comma - begin);
+    begin = comma + 1;
+    if (!item.empty()) list.Add(item);
+  }
+  errors->insert(errors->end(), list.errors.begin(), list.errors.end());
+  if (notes != nullptr && !list.by_number.empty()) {
+    const size_t more = list.by_number.size() - 1;
+    notes->push_back(Printable(list.by_number.front()) +
+                     (more > 0 ? " and " + std::to_string(more) + " more directories" : "") +
+                     ": files are taken in the order of the numbers in their names, which is not "
+                     "the byte order of the names");
+  }
+  return std::move(list.paths);
 }
 
 }  // namespace rigel

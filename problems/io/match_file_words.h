@@ -56,11 +56,6 @@ inline constexpr std::array<Keyword, kNumKeywords> kKeywords = {{
     {"matches", "matches N", 2},
 }};
 
-bool IsControl(char c);
-
-// False if the word is not a finite number.
-bool ParseNumber(std::string_view word, double* value);
-
 }  // namespace rigel::match_file
 
 #endif  // RIGEL_PROBLEMS_IO_MATCH_FILE_WORDS_H_

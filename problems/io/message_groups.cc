@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
 
 namespace rigel {
 namespace {
@@ -30,7 +30,7 @@ std::string WithoutNumbers(const std::string& text) {
 std::vector<std::string> GroupMessages(const std::vector<std::string>& messages,
                                        const std::vector<std::string>& files) {
   std::unordered_set<std::string> names;
-  for (const std::string& file : files) names.insert(PrintablePath(file));
+  for (const std::string& file : files) names.insert(Printable(file));
   // What follows the longest of the names that the message begins with.
   const auto without_name = [&](const std::string& message) {
     for (size_t colon = message.rfind(':'); colon != std::string::npos && colon > 0;

@@ -1,4 +1,4 @@
-// Messages of many files: those that say the same are one line with a count.
+// Groups equal messages of many files into one line with a count.
 #ifndef RIGEL_PROBLEMS_IO_MESSAGE_GROUPS_H_
 #define RIGEL_PROBLEMS_IO_MESSAGE_GROUPS_H_
 
@@ -7,7 +7,7 @@
 
 namespace rigel {
 
-// The messages, each of which begins with the printable name of one of `files` (PrintablePath())
+// The messages, each of which begins with the printable name of one of `files` (Printable())
 // and a colon, in their order; of those that are equal but for the name the first, with "(N files
 // alike)" behind it. What begins with no such name, or names a line of the file, stands for itself.
 std::vector<std::string> GroupMessages(const std::vector<std::string>& messages,

@@ -1,4 +1,4 @@
-// The order of files named by numbers.
+// The order of file names that contain numbers.
 #ifndef RIGEL_PROBLEMS_IO_NAME_ORDER_H_
 #define RIGEL_PROBLEMS_IO_NAME_ORDER_H_
 

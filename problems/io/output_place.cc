@@ -2,9 +2,10 @@
 
 #include <unistd.h>
 
-#include <charconv>
 #include <filesystem>
 #include <system_error>
+
+#include "rigel/problems/io/parse_number.h"
 
 namespace rigel {
 namespace {
@@ -15,9 +16,7 @@ namespace fs = std::filesystem;
 int OwnDescriptor(const fs::path& directory, const std::string& name) {
   if (directory != "/proc/" + std::to_string(getpid()) + "/fd") return -1;
   int descriptor = -1;
-  const char* const end = name.data() + name.size();
-  const auto [stop, status] = std::from_chars(name.data(), end, descriptor);
-  return status == std::errc() && stop == end ? descriptor : -1;
+  return ParseInteger(name, 0, &descriptor) ? descriptor : -1;
 }
 
 void SetKind(OutputPlace* place) {

@@ -1,4 +1,4 @@
-// Where the path of an output leads: what is there, and whether two paths are one file.
+// The target of an output path: what kind of file it is, and whether two paths are the same file.
 #ifndef RIGEL_PROBLEMS_IO_OUTPUT_PLACE_H_
 #define RIGEL_PROBLEMS_IO_OUTPUT_PLACE_H_
 
@@ -23,11 +23,11 @@ struct OutputPlace {
   struct stat status {};  // of what is there; not of kNone
 };
 
-// Follows the links of `path`, also those that lead to nothing yet.
+// Follows the links of `path`, also links to files that do not exist yet.
 OutputPlace FollowLinks(const std::string& path);
 
-// Whether both are one regular file, by any spelling, link or hard link, or will be one when they
-// are written, or are one open file of this process. Devices and FIFOs are never one.
+// True if both are the same regular file, by any spelling, link or hard link, or will be when they
+// are written, or are the same open file of this process. False for devices and FIFOs.
 bool SamePlace(const OutputPlace& a, const OutputPlace& b);
 
 }  // namespace rigel

@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "rigel/problems/io/match_file.h"
-
 namespace rigel {
 namespace {
 
@@ -80,8 +78,6 @@ std::string Printable(std::string_view text) {
   }
   return out;
 }
-
-std::string PrintablePath(const std::string& path) { return Printable(path); }
 
 std::string Quoted(std::string_view word) {
   // Bytes: enough to know it again, and the message stays a line.

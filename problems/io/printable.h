@@ -1,5 +1,5 @@
-// Words of files and names of files as they may be shown: on a terminal they must be read, not
-// obeyed.
+// Text of files and file names, made safe to show: control characters in it must not act on a
+// terminal.
 #ifndef RIGEL_PROBLEMS_IO_PRINTABLE_H_
 #define RIGEL_PROBLEMS_IO_PRINTABLE_H_
 
@@ -8,9 +8,9 @@
 
 namespace rigel {
 
-// The text with the bytes of what commands a terminal or misleads the eye in hexadecimal, "\x1b":
-// control characters (C0, delete, C1), marks that turn the direction of writing, line separators,
-// byte order marks, and bytes that are not UTF-8. Other UTF-8 stays as it is.
+// The text with unsafe bytes in hexadecimal, as "\x1b": control characters (C0, delete, C1), marks
+// of writing direction, line separators, byte order marks, and bytes that are not UTF-8. Other
+// UTF-8 is unchanged.
 std::string Printable(std::string_view text);
 
 // A word of a file for a message: quoted, printable, and cut to 30 bytes.

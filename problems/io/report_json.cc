@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "rigel/core/pose.h"
+
 namespace rigel {
 namespace {
 
@@ -35,6 +37,23 @@ nlohmann::ordered_json NewReport(const char* format, const std::string& version)
   report["format"] = format;
   if (!version.empty()) report["rigel_version"] = version;
   return report;
+}
+
+nlohmann::ordered_json OptionsJson(const ReportOptions& options) {
+  Json json = Json::object();
+  for (const auto& [name, value] : options) json[name] = value;
+  return json;
+}
+
+nlohmann::ordered_json QuaternionJson(const Eigen::Matrix3d& R) {
+  Pose pose;
+  pose.R = R;
+  const Eigen::Quaterniond q = pose.Quaternion();
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+void PutKnown(const char* key, double value, nlohmann::ordered_json* object) {
+  if (std::isfinite(value) && value >= 0) (*object)[key] = value;
 }
 
 std::string JsonText(Json value, int indent) {

@@ -1,4 +1,4 @@
-// The options that made a report.
+// The options with which a report was made.
 #ifndef RIGEL_PROBLEMS_IO_REPORT_OPTIONS_H_
 #define RIGEL_PROBLEMS_IO_REPORT_OPTIONS_H_
 

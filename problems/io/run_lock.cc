@@ -8,7 +8,8 @@
 #include <cerrno>
 #include <system_error>
 
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/exception_message.h"
+#include "rigel/problems/io/printable.h"
 
 namespace rigel {
 
@@ -26,13 +27,12 @@ bool RunLock::Take(const std::string& path, std::string* error) {
     const int descriptor =
         open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
     if (descriptor < 0) {
-      *error =
-          PrintablePath(path) + ": cannot be written: " + std::generic_category().message(errno);
+      *error = Printable(path) + ": cannot be written: " + SystemMessage(errno);
       return false;
     }
     if (flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       close(descriptor);
-      *error = PrintablePath(path) + ": another run is at work in this directory";
+      *error = Printable(path) + ": another run is at work in this directory";
       return false;
     }
     // The run that had it may have removed the file between the two calls.
@@ -45,7 +45,7 @@ bool RunLock::Take(const std::string& path, std::string* error) {
     }
     close(descriptor);
   }
-  *error = PrintablePath(path) + ": other runs make and remove it";
+  *error = Printable(path) + ": other runs make and remove it";
   return false;
 }
 

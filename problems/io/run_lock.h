@@ -1,4 +1,4 @@
-// A lock file: one run at a time works where it lies.
+// A lock file: only one run at a time works in its directory.
 #ifndef RIGEL_PROBLEMS_IO_RUN_LOCK_H_
 #define RIGEL_PROBLEMS_IO_RUN_LOCK_H_
 
@@ -6,8 +6,8 @@
 
 namespace rigel {
 
-// Held (flock) until the object or the process ends, however it ends: the file of a killed run
-// locks nothing.
+// The lock (flock) is held until the object or the process ends. The lock file of a killed run does
+// not lock.
 class RunLock {
  public:
   RunLock() = default;
@@ -16,8 +16,9 @@ class RunLock {
   // Removes the file.
   ~RunLock();
 
-  // Makes the file if it is not there. False with a message, one line of printable text, if another
-  // run has it or it cannot be made. A file system that knows no locks lets every run through.
+  // Creates the file if it does not exist. False with a message, one line of printable text, if
+  // another run holds the lock or the file cannot be created. Always succeeds on a file system
+  // without locks.
   bool Take(const std::string& path, std::string* error);
 
  private:

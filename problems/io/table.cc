@@ -62,6 +62,12 @@ std::string Table::Format() const {
   return text;
 }
 
+std::string FormatShort(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", value);
+  return text;
+}
+
 std::string FormatNumber(std::optional<double> value, int digits) {
   if (!value.has_value() || !std::isfinite(*value)) return "-";
   char text[64];

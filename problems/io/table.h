@@ -26,6 +26,9 @@ class Table {
   std::vector<std::vector<std::string>> rows_;
 };
 
+// Six significant digits.
+std::string FormatShort(double value);
+
 // Fixed-point with `digits` decimals; "-" for nothing or a number that is not finite.
 std::string FormatNumber(std::optional<double> value, int digits);
 

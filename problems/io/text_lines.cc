@@ -1,19 +1,16 @@
 #include "rigel/problems/io/text_lines.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <system_error>
 
 #include "rigel/problems/io/input_file.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
 
 namespace rigel {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
 
-// As files of poses and times go 256 MiB are a month of them; lines take more memory than bytes.
+// Bytes: a month of poses at 10 Hz. As lines they take several times this memory.
 constexpr size_t kMaxTableBytes = size_t{256} << 20;
 
 // Calls line(number, text) for each line, without blanks at its ends, while that returns true.
@@ -25,8 +22,8 @@ bool ForEachLine(const std::string& path, std::string* error, const Line& line) 
   int64_t bad_line;
   std::string what;
   if (!CheckText(&text, &bad_line, &what)) {
-    *error = PrintablePath(path) + (bad_line > 0 ? ":" + std::to_string(bad_line) : "") + ": " +
-             what + ", expected UTF-8 text";
+    *error = Printable(path) + (bad_line > 0 ? ":" + std::to_string(bad_line) : "") + ": " + what +
+             ", expected UTF-8 text";
     return false;
   }
   for (int number = 1; !text.empty(); ++number) {
@@ -65,7 +62,7 @@ bool ReadFrameLines(const std::string& path, std::vector<TextLine>* lines, std::
 }
 
 std::string Where(const std::string& path, const TextLine& line) {
-  return PrintablePath(path) + ":" + std::to_string(line.number);
+  return Printable(path) + ":" + std::to_string(line.number);
 }
 
 std::string_view TrimBlanks(std::string_view text) {
@@ -93,20 +90,6 @@ std::vector<std::string_view> SplitAtCommas(std::string_view text) {
     if (comma == std::string_view::npos) return words;
     text.remove_prefix(comma + 1);
   }
-}
-
-bool ParseFinite(std::string_view word, double* value) {
-  // from_chars takes no plus sign.
-  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
-  const char* const end = word.data() + word.size();
-  const auto [stop, status] = std::from_chars(word.data(), end, *value);
-  return status == std::errc() && stop == end && std::isfinite(*value);
-}
-
-bool ParseTimestamp(std::string_view word, int64_t* value) {
-  const char* const end = word.data() + word.size();
-  const auto [stop, status] = std::from_chars(word.data(), end, *value);
-  return status == std::errc() && stop == end && *value >= 0;
 }
 
 }  // namespace rigel

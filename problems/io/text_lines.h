@@ -19,12 +19,12 @@ struct TextLine {
 };
 
 // The lines that are not blank and do not start with '#', without blanks at their ends. For files
-// whose lines say themselves what they are of.
+// whose lines identify themselves.
 bool ReadTextLines(const std::string& path, std::vector<TextLine>* lines, std::string* error);
 
-// The lines of a file in which line k is that of frame k: all, without blanks at their ends. A
-// blank line or a comment is refused, with its number: skipped it would give each later frame the
-// line of another. Blank lines at the end of the file are none.
+// All lines of a file whose line k belongs to frame k, without blanks at their ends. A blank line
+// or a comment is refused with its number: if it were skipped, all later frames would get a wrong
+// line. Blank lines at the end of the file are allowed.
 bool ReadFrameLines(const std::string& path, std::vector<TextLine>* lines, std::string* error);
 
 // "path:line"; a path as one line of text.
@@ -37,12 +37,6 @@ std::vector<std::string_view> SplitAtBlanks(std::string_view text);
 
 // Between commas, without blanks around them; may be empty.
 std::vector<std::string_view> SplitAtCommas(std::string_view text);
-
-// False if the whole word is not a finite number.
-bool ParseFinite(std::string_view word, double* value);
-
-// False if the whole word is not an integer from 0.
-bool ParseTimestamp(std::string_view word, int64_t* value);
 
 }  // namespace rigel
 

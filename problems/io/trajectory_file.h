@@ -16,12 +16,12 @@
 
 namespace rigel {
 
-// No comments: the benchmark's own reader knows none.
+// No comments: the benchmark's own reader does not accept any.
 std::string FormatKittiTrajectory(const std::vector<Pose>& world_from_body);
 
-// Begins with a comment line that says which axes of the body are down and forward, "# body: down
-// +y, forward +z", for who looks at it from above. Without times (an empty list) the poses are
-// numbered 0, 1, ..., which another comment line says.
+// Begins with a comment line that states the axes of the body, "# body: down +y, forward +z", which
+// a plot from above needs. Without times (an empty list) the poses are numbered 0, 1, ..., which a
+// second comment line states.
 std::string FormatTumTrajectory(const std::vector<Pose>& world_from_body,
                                 const std::vector<double>& times, const BodyAxes& axes);
 

@@ -10,10 +10,11 @@
 #include <filesystem>
 #include <functional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/directory.h"
+#include "rigel/problems/io/exception_message.h"
+#include "rigel/problems/io/printable.h"
 
 namespace rigel {
 namespace {
@@ -21,20 +22,17 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = OutputPlace::Kind;
 
-// Not ".matches" at the end, so that a left-over is never read, and no name that a user gives.
+// The names do not end in ".matches", so that a left-over is never read as a match file.
 constexpr std::string_view kMark = ".rigel-tmp";
 constexpr int kNumTemporaries = 10;  // as many runs can write one file at a time
 
-// Open files of one StagedFiles that hold locks. Of more, a second run that writes the same files
-// at the same moment could take the rest for left-overs: the first then fails, with a message.
+// Files of one StagedFiles that stay open to hold their locks: a process may have about 1000 open
+// files. Further files have no lock. A second run that writes them at the same moment would remove
+// them as left-overs, and the first run fails with a message.
 constexpr size_t kMaxLocks = 200;
 
-std::string SystemMessage(int error_number) {
-  return std::generic_category().message(error_number);
-}
-
 bool CannotBeWritten(const std::string& name, const std::string& why, std::string* error) {
-  *error = PrintablePath(name) + ": cannot be written: " + why;
+  *error = Printable(name) + ": cannot be written: " + why;
   return false;
 }
 
@@ -67,7 +65,7 @@ int LockLeftOver(const std::string& temporary) {
   if (descriptor < 0 && errno == EACCES) descriptor = open(temporary.c_str(), O_RDONLY | flags);
   if (descriptor < 0) return -1;
   struct stat opened, there;
-  // Who had it until now may have put it in its place meanwhile.
+  // The other run may have renamed it in the meantime.
   if (fstat(descriptor, &opened) == 0 && S_ISREG(opened.st_mode) &&
       flock(descriptor, LOCK_EX | LOCK_NB) == 0 && stat(temporary.c_str(), &there) == 0 &&
       there.st_ino == opened.st_ino && there.st_dev == opened.st_dev) {
@@ -94,8 +92,8 @@ int CreateTemporary(const std::string& path, mode_t mode, std::string* temporary
       if (errno == EEXIST) continue;
       return -1;
     }
-    // Another run may have taken it for a left-over before it was locked. A file system without
-    // locks has none to tell left-overs by, and no run removes any.
+    // Another run may have removed it as a left-over before it was locked. On a file system without
+    // locks no run removes any.
     struct stat status;
     const bool lost = flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     if (!lost && fstat(descriptor, &status) == 0 && status.st_nlink > 0) return descriptor;
@@ -107,9 +105,8 @@ int CreateTemporary(const std::string& path, mode_t mode, std::string* temporary
 
 std::string NoTemporary(const std::string& path, int error_number) {
   const fs::path directory = fs::path(path).parent_path();
-  std::error_code ignored;
-  if (error_number == ENOENT && !directory.empty() && !fs::exists(directory, ignored)) {
-    return "the directory " + PrintablePath(directory.string()) + " does not exist";
+  if (error_number == ENOENT && !directory.empty() && !Exists(directory)) {
+    return "the directory " + Printable(directory.string()) + " does not exist";
   }
   if (error_number == EEXIST) return "other runs are writing it";
   return "no temporary file beside it: " + SystemMessage(error_number);
@@ -135,7 +132,7 @@ bool TakeModeAndOwner(const struct stat& status, int descriptor, const std::stri
 int OpenTemporary(const OutputPlace& place, const std::string& name, std::string* temporary,
                   std::string* error) {
   const bool replaces = place.kind == Kind::kRegular;
-  // A file that its owner has made unwritable is not to be replaced either.
+  // A file without write permission is not replaced.
   if (replaces && faccessat(AT_FDCWD, place.path.c_str(), W_OK, AT_EACCESS) != 0) {
     CannotBeWritten(name, SystemMessage(errno), error);
     return -1;
@@ -221,7 +218,8 @@ bool StagedFiles::Add(const std::string& path, const std::string& text, std::str
   files_.push_back(file);  // from here on it is removed if it comes to nothing
   files_.back().lock = descriptor;
   if (!WriteAll(descriptor, text)) return Refused(path, errno, error);
-  // A full disk may show only when the file is closed; the lock has to stay.
+  // Some file systems report a full disk only at close(). A copy is closed, as the lock has to
+  // stay.
   const int copy = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
   if (copy >= 0 && close(copy) != 0) return Refused(path, errno, error);
   if (files_.size() > kMaxLocks) {
@@ -248,17 +246,16 @@ bool StagedFiles::Commit(std::string* error) {
 
 void RemoveLeftOvers(const std::string& directory,
                      const std::function<bool(const std::string& name)>& is_ours) {
-  std::error_code code;
   std::vector<std::string> temporaries;
-  fs::directory_iterator entry(directory, code);
-  for (; !code && entry != fs::directory_iterator(); entry.increment(code)) {
-    const std::string name = entry->path().filename().string();
+  std::string ignored;
+  const auto add = [&](const std::string& name, bool /*is_directory*/) {
     const size_t mark = name.rfind(kMark);
     if (mark != std::string::npos && mark + kMark.size() + 1 == name.size() &&
         is_ours(name.substr(0, mark))) {
-      temporaries.push_back(entry->path().string());
+      temporaries.push_back((fs::path(directory) / name).string());
     }
-  }
+  };
+  ListDirectory(directory, add, &ignored);
   for (const std::string& temporary : temporaries) RemoveLeftOver(temporary);
 }
 

@@ -1,11 +1,12 @@
-// Outputs that are there whole or not at all, and that destroy nothing else.
+// Output files that are complete or absent, never partly written.
 //
-// The links of a path are followed. A regular file, or nothing, is replaced: the text is written to
-// a temporary file beside it, which gets its mode and owner and then takes its place. All else that
-// can be written to, a device, a FIFO or /dev/stdout, is written to and stays what it is.
+// Links in the path are followed. A regular or absent file is replaced: the text is written to a
+// temporary file in the same directory, which gets the mode and owner of the old file and is then
+// renamed. Devices, FIFOs and /dev/stdout are written to directly.
 //
-// Temporaries are called NAME.rigel-tmp0 to 9 and are locked (flock) while their run lives. What a
-// killed run left behind is known by that: it is removed by the next that writes the file.
+// Temporary files are named NAME.rigel-tmp0 to 9 and are locked (flock) while their run lives. A
+// temporary file without a lock was left by a killed run. The next run that writes the file removes
+// it.
 //
 // Messages are one line of printable text.
 #ifndef RIGEL_PROBLEMS_IO_WHOLE_FILE_H_
@@ -19,26 +20,26 @@
 
 namespace rigel {
 
-// False with a message if that fails; a file that was there is then as it was.
+// False with a message if that fails. An old file is then unchanged.
 bool WriteWholeFile(const std::string& path, const std::string& text, std::string* error);
 
-// False with a message if WriteWholeFile() would fail, as far as can be known before.
+// Checks in advance whether WriteWholeFile() can succeed. False with a message if not.
 bool CanWriteWholeFile(const std::string& path, std::string* error);
 
-// Several such files whose temporaries are all written before the first takes its place: what can
-// fail, a full disk above all, then fails before anything has changed.
+// Several such files. All temporary files are written before the first is renamed, so that most
+// failures, such as a full disk, occur before any output has changed.
 class StagedFiles {
  public:
   StagedFiles() = default;
   StagedFiles(const StagedFiles&) = delete;
   StagedFiles& operator=(const StagedFiles&) = delete;
-  // Removes the temporaries that did not take their place.
+  // Removes the temporary files that were not renamed.
   ~StagedFiles();
 
   // False with a message if the temporary file cannot be written.
   bool Add(const std::string& path, const std::string& text, std::string* error);
 
-  // Puts all in their places, in order. False with a message at the first that cannot be put there.
+  // Renames all in order. False with a message at the first that fails.
   bool Commit(std::string* error);
 
   int committed() const { return committed_; }
@@ -56,12 +57,13 @@ class StagedFiles {
   int committed_ = 0;
 };
 
-// Removes from a directory what killed runs left of files whose names `is_ours` knows.
+// Removes the temporary files of killed runs from a directory: those of names that `is_ours`
+// accepts.
 void RemoveLeftOvers(const std::string& directory,
                      const std::function<bool(const std::string& name)>& is_ours);
 
-// Lets what a killed run left of a file take its place if `accept` knows the temporary as whole.
-// Whether there was such a one.
+// Completes a file of a killed run: renames its temporary file if `accept` finds it complete. True
+// if there was one.
 bool FinishLeftOver(const std::string& path,
                     const std::function<bool(const std::string& temporary)>& accept);
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <system_error>
 #include <utility>
 
+#include "rigel/problems/io/directory.h"
 #include "rigel/problems/io/kitti_poses.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
 
 namespace rigel {
 namespace {
@@ -14,20 +14,13 @@ namespace {
 bool ListPoseFiles(const std::string& directory, std::vector<std::filesystem::path>* files,
                    std::string* error) {
   namespace fs = std::filesystem;
-  std::error_code code;
-  fs::directory_iterator entry(directory, code);
-  for (; !code && entry != fs::directory_iterator(); entry.increment(code)) {
-    std::error_code ignored;
-    if (entry->path().extension() == ".txt" && !entry->is_directory(ignored)) {
-      files->push_back(entry->path());
-    }
-  }
-  if (code) {
-    *error = PrintablePath(directory) + ": cannot be listed: " + code.message();
-    return false;
-  }
+  const auto add = [&](const std::string& name, bool is_directory) {
+    const fs::path file = fs::path(directory) / name;
+    if (file.extension() == ".txt" && !is_directory) files->push_back(file);
+  };
+  if (!ListDirectory(directory, add, error)) return false;
   if (files->empty()) {
-    *error = PrintablePath(directory) + ": no pose files (00.txt, ...) in this directory";
+    *error = Printable(directory) + ": no pose files (00.txt, ...) in this directory";
     return false;
   }
   std::sort(files->begin(), files->end(),
@@ -50,7 +43,7 @@ bool ReadDrivenMotions(const std::string& directory, int every, std::vector<Driv
     }
   }
   if (result.empty()) {
-    *error = PrintablePath(directory) + ": no motion: no file has two poses";
+    *error = Printable(directory) + ": no motion: no file has two poses";
     return false;
   }
   *motions = std::move(result);

@@ -1,4 +1,4 @@
-// Motions of real drives, to simulate: those of trajectories of the KITTI odometry benchmark
+// Motions of real drives for simulation, from trajectories of the KITTI odometry benchmark
 // (problems/io/kitti_poses.h).
 #ifndef RIGEL_PROBLEMS_SCENES_DRIVEN_MOTION_H_
 #define RIGEL_PROBLEMS_SCENES_DRIVEN_MOTION_H_
@@ -20,9 +20,9 @@ struct DrivenMotion {
   Pose body2_from_body1() const { return world_from_body2.Inverse() * world_from_body1; }
 };
 
-// Of the motions between consecutive poses the first and each `every`-th after it, of each of the
-// files *.txt of a directory, in byte order of their names, which name the sequences; the body is
-// the left camera. False with a message if a file cannot be read or there is no motion.
+// Reads the files *.txt of a directory, in byte order of their names, which are the sequences.
+// Takes the first motion between consecutive poses of a file and each `every`-th after it. The body
+// is the left camera. False with a message if a file cannot be read or there is no motion.
 bool ReadDrivenMotions(const std::string& directory, int every, std::vector<DrivenMotion>* motions,
                        std::string* error);
 

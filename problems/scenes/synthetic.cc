@@ -4,16 +4,34 @@
 #include <cmath>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/enum_names.h"
 #include "rigel/core/random.h"
+#include "rigel/problems/scenes/moving_car.h"
 
 namespace rigel {
 namespace {
 
-// Draws of a point before giving up: a motion that leaves fewer than one point in a thousand in
-// view is out of view.
-constexpr int kMaxDraws = 1000;
+constexpr EnumName<MotionPattern> kMotionNames[] = {{MotionPattern::kForward, "forward"},
+                                                    {MotionPattern::kRandom, "random"},
+                                                    {MotionPattern::kSideways, "sideways"},
+                                                    {MotionPattern::kPlanar, "planar"}};
 
-constexpr double kRatioTest = 0.8;  // no match has a larger score
+constexpr EnumName<RotationAxisPattern> kRotationAxisNames[] = {
+    {RotationAxisPattern::kY, "y"}, {RotationAxisPattern::kRandom, "random"}};
+
+// Lowe's ratio test: no match has a larger score.
+constexpr double kRatioTest = 0.8;
+// Radians and metres, 1 sigma: by these a camera is turned and moved. Both are stated in
+// synthetic.h.
+constexpr double kMountingAngle = 0.1;
+constexpr double kMountingShift = 0.05;
+// Metres, the range of the depths in view 1: both also of synthetic.h.
+constexpr double kNearestPoint = 5.0;
+constexpr double kFarthestPoint = 30.0;
+// An outlier's score is distributed as the largest of so many uniform numbers, as SIFT's on KITTI.
+constexpr double kOutlierDraws = 11.0;
+// Radians: a smaller rotation has no axis.
+constexpr double kNoRotation = 1e-6;
 
 // Body z is ahead and y down.
 Rig MakeRing(int num_cameras) {
@@ -36,8 +54,8 @@ Rig MakeRig(int num_cameras, Random* random) {
   for (int k = 0; k < num_cameras; ++k) {
     RigCamera camera;
     camera.intrinsics = {400.0, 400.0, 320.0, 240.0, 640, 480};
-    camera.Q = ExpSO3(0.1 * random->NormalVector3());
-    camera.s = positions[k] + 0.05 * random->NormalVector3();
+    camera.Q = ExpSO3(kMountingAngle * random->NormalVector3());
+    camera.s = positions[k] + kMountingShift * random->NormalVector3();
     rig.cameras.push_back(camera);
   }
   return rig;
@@ -56,12 +74,12 @@ bool DrawSeenMatch(const Rig& rig, const Pose& truth, Random* random, Match* mat
   for (int draw = 0; draw < kMaxDraws; ++draw) {
     const double u = random->Uniform(0.0, camera1.intrinsics.width);
     const double v = random->Uniform(0.0, camera1.intrinsics.height);
-    const double depth = random->Uniform(5.0, 30.0);
+    const double depth = random->Uniform(kNearestPoint, kFarthestPoint);
     match->pixel1 = {u, v};
     const Eigen::Vector3d X1 =
         camera1.Q * (depth * camera1.intrinsics.Normalize(match->pixel1)) + camera1.s;
     const Eigen::Vector3d X2 = camera2.Q.transpose() * (truth * X1 - camera2.s);
-    if (!(X2.z() > 0.1)) continue;
+    if (!(X2.z() > kMinDepth)) continue;
     match->pixel2 = camera2.intrinsics.Project(X2);
     if (camera2.intrinsics.InImage(match->pixel2)) return true;
   }
@@ -78,7 +96,7 @@ bool DrawMatch(const SceneOptions& options, const Rig& rig, const Pose& truth, b
     match->camera2 = (match->camera1 + 1 + random->Index(n - 1)) % n;
     return DrawSeenMatch(rig, truth, random, match);
   }
-  // In a turn one neighbour may see nothing of what the other does.
+  // In a turn one of the two neighbours may see nothing in common with this camera.
   const bool right = random->Index(2) == 1;
   for (const bool side : {right, !right}) {
     match->camera2 = (match->camera1 + (side ? 1 : n - 1)) % n;
@@ -87,60 +105,10 @@ bool DrawMatch(const SceneOptions& options, const Rig& rig, const Pose& truth, b
   return false;
 }
 
-// A box on the ground in the frame of view 1 and its motion between the frames.
-struct Car {
-  Eigen::Matrix3d axes;  // lengthwise, across, down
-  Eigen::Vector3d centre;
-  Pose motion;  // of its points
-};
-
-Car DrawCar(const Eigen::Vector3d& down, Random* random) {
-  Car car;
-  const Eigen::Vector3d ahead =
-      (Eigen::Vector3d::UnitZ() - down.z() * down).normalized();  // a camera looks along z
-  const Eigen::Vector3d right = down.cross(ahead);
-  const auto horizontal = [&](double angle) -> Eigen::Vector3d {
-    return std::cos(angle) * ahead + std::sin(angle) * right;
-  };
-  const double distance = random->Uniform(5.0, 15.0);
-  const double bearing = random->Uniform(-0.4, 0.4);
-  // Cameras are a metre and a half above the ground, the box's centre half as much.
-  car.centre = distance * horizontal(bearing) + 0.75 * down;
-  const Eigen::Vector3d length = horizontal(random->Uniform(0.0, 2.0 * kPi));
-  car.axes << length, down.cross(length), down;
-  const double way = random->Uniform(0.5, 2.0);
-  const Eigen::Vector3d shift = way * horizontal(random->Uniform(0.0, 2.0 * kPi));
-  car.motion.R = ExpSO3(DegToRad(random->Uniform(-3.0, 3.0)) * down);
-  car.motion.t = car.centre + shift - car.motion.R * car.centre;
-  return car;
-}
-
-// A point of the car that both cameras of the match see.
-bool DrawCarMatch(const Car& car, const Rig& rig, const Pose& truth, Random* random, Match* match) {
-  const RigCamera& camera1 = rig.cameras[match->camera1];
-  const RigCamera& camera2 = rig.cameras[match->camera2];
-  const Pose motion = truth * car.motion;
-  for (int draw = 0; draw < kMaxDraws; ++draw) {
-    const double x = random->Uniform(-2.25, 2.25);
-    const double y = random->Uniform(-0.9, 0.9);
-    const double z = random->Uniform(-0.75, 0.75);
-    const Eigen::Vector3d X = car.centre + car.axes * Eigen::Vector3d(x, y, z);
-    const Eigen::Vector3d X1 = camera1.Q.transpose() * (X - camera1.s);
-    const Eigen::Vector3d X2 = camera2.Q.transpose() * (motion * X - camera2.s);
-    if (!(X1.z() > 0.1) || !(X2.z() > 0.1)) continue;
-    match->pixel1 = camera1.intrinsics.Project(X1);
-    match->pixel2 = camera2.intrinsics.Project(X2);
-    if (camera1.intrinsics.InImage(match->pixel1) && camera2.intrinsics.InImage(match->pixel2)) {
-      return true;
-    }
-  }
-  return false;
-}
-
 // Moves the given matches to a car. False if none was found that all their cameras see.
 bool MoveToCar(const SceneOptions& options, const FramePair& pair, const int* chosen, int size,
                Random* random, std::vector<Match>* matches) {
-  // Draws before giving up: a car that all these cameras see may be rare, or impossible.
+  // Cars drawn before giving up: one that all these cameras see may be rare or impossible.
   constexpr int kMaxCars = 100;
   for (int attempt = 0; attempt < kMaxCars; ++attempt) {
     const Car car = DrawCar(*pair.prior.gravity1, random);
@@ -159,29 +127,11 @@ bool MoveToCar(const SceneOptions& options, const FramePair& pair, const int* ch
 }  // namespace
 
 bool ParseMotionPattern(std::string_view name, MotionPattern* pattern) {
-  if (name == "forward") {
-    *pattern = MotionPattern::kForward;
-  } else if (name == "random") {
-    *pattern = MotionPattern::kRandom;
-  } else if (name == "sideways") {
-    *pattern = MotionPattern::kSideways;
-  } else if (name == "planar") {
-    *pattern = MotionPattern::kPlanar;
-  } else {
-    return false;
-  }
-  return true;
+  return FindValue(kMotionNames, name, pattern);
 }
 
 bool ParseRotationAxisPattern(std::string_view name, RotationAxisPattern* pattern) {
-  if (name == "y") {
-    *pattern = RotationAxisPattern::kY;
-  } else if (name == "random") {
-    *pattern = RotationAxisPattern::kRandom;
-  } else {
-    return false;
-  }
-  return true;
+  return FindValue(kRotationAxisNames, name, pattern);
 }
 
 bool SceneOptions::IsValid(std::string* error) const {
@@ -253,7 +203,7 @@ bool MakeScenePair(const SceneOptions& options, int index, const Pose& truth, Fr
   result.prior.gravity2 = truth.R * *result.prior.gravity1;
   const double angle = LogSO3(truth.R).norm();
   result.prior.axis =
-      angle > 1e-6 ? Eigen::Vector3d(LogSO3(truth.R) / angle) : Eigen::Vector3d::UnitY();
+      angle > kNoRotation ? Eigen::Vector3d(LogSO3(truth.R) / angle) : Eigen::Vector3d::UnitY();
 
   const int num_inter = static_cast<int>(std::lround(options.inter_share * options.num_matches));
   const int num_outliers =
@@ -286,7 +236,7 @@ bool MakeScenePair(const SceneOptions& options, int index, const Pose& truth, Fr
     const double v = random.Uniform(0.0, camera.height);
     match.pixel2 = {u, v};
   }
-  // After all else, so that the rest of a pair is the same with and without them.
+  // Drawn last, so that the rest of a pair is the same with and without them.
   const int num_moving =
       std::min(static_cast<int>(std::lround(options.moving_share * options.num_matches)),
                options.num_matches - num_outliers);
@@ -302,7 +252,7 @@ bool MakeScenePair(const SceneOptions& options, int index, const Pose& truth, Fr
     const double a = random.Uniform();
     const double b = random.Uniform();
     result.matches[order[k]].score =
-        kRatioTest * (k < num_outliers ? std::pow(a, 1.0 / 11.0) : 0.5 * (a + b));
+        kRatioTest * (k < num_outliers ? std::pow(a, 1.0 / kOutlierDraws) : 0.5 * (a + b));
   }
   *pair = result;
   return true;

@@ -5,8 +5,10 @@
 namespace rigel {
 namespace {
 
-// As in KITTI's metric: segments of 1 to 8 units, there of 100 m.
+// KITTI's metric: segments of 1 to 8 units of 100 m, from every 10th frame.
 constexpr int kLengths = 8;
+constexpr double kKittiUnit = 100.0;  // metres, the unit of a path that is long enough for it
+constexpr int kKittiStartStep = 10;   // frames between the starts of two segments
 
 // Distance along the path up to each pose.
 std::vector<double> PathLengths(const std::vector<Pose>& poses) {
@@ -33,16 +35,16 @@ Drift ComputeDrift(const std::vector<Pose>& truth, const std::vector<Pose>& esti
   Drift drift;
   const std::vector<double> path = PathLengths(truth);
   drift.path_length = path.back();
-  double unit = 100.0;
+  double unit = kKittiUnit;
   while (unit > 1.0 && !(drift.path_length > unit)) unit /= 10.0;
-  drift.start_step = unit < 100.0 ? 1 : 10;
+  drift.start_step = unit < kKittiUnit ? 1 : kKittiStartStep;
   for (int n = 1; n <= kLengths; ++n) {
     SegmentDrift segments;
     segments.length = n * unit;
     for (size_t first = 0; first < path.size(); first += drift.start_step) {
       size_t last = first;
       while (last < path.size() && !(path[last] > path[first] + segments.length)) ++last;
-      if (last == path.size()) break;  // later ones have less of the path before them
+      if (last == path.size()) break;  // the rest of the path is shorter for all later starts
       const Pose error = MotionError(truth, estimate, first, last);
       segments.translation += error.t.norm() / segments.length;
       segments.rotation += Angle(error) / segments.length;

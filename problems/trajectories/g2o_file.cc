@@ -8,13 +8,13 @@
 
 #include "rigel/core/rig_centre.h"
 #include "rigel/problems/io/csv.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
 #include "rigel/refine/between_factor.h"
 
 namespace rigel {
 namespace {
 
-// A standard deviation of |t| above this, metres, is none of a rig at rest.
+// Metres. With a larger standard deviation of |t| the covariance is not used for a rig at rest.
 constexpr double kRoughStillMetres = 1.0;
 
 // Why the motion makes no edge; empty if it does.
@@ -28,8 +28,8 @@ std::string WhyNoEdge(const FramePair& pair, const MotionEstimate& e) {
   return "";
 }
 
-// Takes the rig's centre as at rest, with the covariance that the estimate has about it. Where |t|
-// was not determined at all that says nothing in metres, and its part is kStillMetres.
+// Sets the rig's centre at rest, with the covariance of the estimate about it. If |t| is not
+// determined, the covariance of the translation is kStillMetres squared.
 void SetStanding(Pose* pose, RefineSummary* refine) {
   const Eigen::Vector3d& point = refine->fitted_point;
   const Matrix6d from_body = BodyFromPointJacobian(pose->R, -point);
@@ -66,86 +66,120 @@ void WritePose(const Pose& pose, std::ostream* stream) {
   }
 }
 
+// How many edges have a length that is not estimated.
+struct LengthCounts {
+  int stated = 0;   // the distance of their pair
+  int unknown = 0;  // kLengthWithoutScale
+  int standing = 0;
+};
+
+BetweenFactor EdgeOf(const FramePair& pair, const MotionEstimate& estimate, LengthCounts* counts) {
+  Pose pose = estimate.pose;
+  RefineSummary refine = estimate.refine;
+  // A sigma of -1 or NaN is unknown.
+  const bool has_length =
+      refine.scale_observable ||
+      (refine.relative_scale_sigma >= 0 && refine.relative_scale_sigma <= kRoughScaleRatio);
+  if (!refine.RigDirectionKnown()) {
+    SetStanding(&pose, &refine);
+    ++counts->standing;
+  } else if (!has_length) {
+    const std::optional<double>& distance = pair.prior.distance;
+    const bool stated = distance.has_value() && *distance > 0;
+    SetUndeterminedLength(stated ? *distance : kLengthWithoutScale, &pose, &refine);
+    ++(stated ? counts->stated : counts->unknown);
+  }
+  return G2oEdge(pose, refine);
+}
+
+// The lines of a graph. A trajectory is open while the next edge goes on from its last vertex.
+class PoseGraph {
+ public:
+  explicit PoseGraph(std::vector<std::string>* notes) : notes_(*notes) {}
+
+  bool open() const { return open_; }
+  int num_edges() const { return num_edges_; }
+  std::string LastVertex() const { return std::to_string(num_vertices_ - 1); }
+  std::string Text() const { return vertices_.str() + edges_.str(); }
+
+  void Close() { open_ = false; }
+
+  void Note(const std::string& text) {
+    notes_.push_back(Printable(text));
+    edges_ << "# " << notes_.back() << "\n";
+  }
+
+  // Opens a trajectory at the identity if none is open.
+  void AddEdge(const BetweenFactor& edge) {
+    if (!open_) {
+      world_from_body_ = Pose();
+      AddVertex();
+      open_ = true;
+    }
+    world_from_body_ = world_from_body_ * edge.measurement;
+    AddVertex();
+    ++num_edges_;
+    edges_ << "EDGE_SE3:QUAT " << num_vertices_ - 2 << " " << num_vertices_ - 1;
+    WritePose(edge.measurement, &edges_);
+    for (int i = 0; i < 6; ++i) {
+      for (int j = i; j < 6; ++j) edges_ << " " << edge.information(i, j);
+    }
+    edges_ << "\n";
+  }
+
+ private:
+  void AddVertex() {
+    vertices_ << "VERTEX_SE3:QUAT " << num_vertices_++;
+    WritePose(world_from_body_, &vertices_);
+    vertices_ << "\n";
+  }
+
+  std::vector<std::string>& notes_;
+  std::ostringstream vertices_ = Stream();
+  std::ostringstream edges_ = Stream();
+  int num_vertices_ = 0;
+  int num_edges_ = 0;
+  Pose world_from_body_;  // of the last vertex
+  bool open_ = false;
+};
+
 }  // namespace
 
 std::string FormatG2o(const std::vector<FramePair>& pairs,
                       const std::vector<MotionEstimate>& estimates,
                       const std::vector<int>& positions, std::vector<std::string>* notes) {
-  std::ostringstream vertices = Stream();
-  std::ostringstream edges = Stream();
-  int num_vertices = 0;
-  Pose world_from_body;  // of the last vertex
-  bool open = false;     // a trajectory goes on from there
-  int num_edges = 0;
-  int num_stated = 0;   // edges without scale, of the length that their pair states
-  int num_unknown = 0;  // ... of kLengthWithoutScale
-  int num_standing = 0;
-  const auto add_vertex = [&] {
-    vertices << "VERTEX_SE3:QUAT " << num_vertices++;
-    WritePose(world_from_body, &vertices);
-    vertices << "\n";
-  };
-  const auto note = [&](const std::string& text) {
-    notes->push_back(PrintablePath(text));
-    edges << "# " << notes->back() << "\n";
-  };
+  PoseGraph graph(notes);
+  LengthCounts counts;
   for (size_t k = 0; k < pairs.size(); ++k) {
-    if (open) {
+    if (graph.open()) {
       const std::string why = WhyNotNext(pairs, positions, k);
       if (!why.empty()) {
-        note(pairs[k].name + ": " + why + ": the trajectory ended before it, at vertex " +
-             std::to_string(num_vertices - 1));
-        open = false;
+        graph.Note(pairs[k].name + ": " + why + ": the trajectory ended before it, at vertex " +
+                   graph.LastVertex());
+        graph.Close();
       }
     }
     const std::string why = WhyNoEdge(pairs[k], estimates[k]);
-    if (!why.empty()) {
-      note(pairs[k].name + ": " + why + ": no edge" +
-           (open ? ", the trajectory ends at vertex " + std::to_string(num_vertices - 1)
-                 : std::string()));
-      open = false;
+    if (why.empty()) {
+      graph.AddEdge(EdgeOf(pairs[k], estimates[k], &counts));
       continue;
     }
-    Pose pose = estimates[k].pose;
-    RefineSummary refine = estimates[k].refine;
-    // -1 and NaN are not known, either.
-    if (!refine.RigDirectionKnown()) {
-      SetStanding(&pose, &refine);
-      ++num_standing;
-    } else if (!refine.scale_observable && !(refine.relative_scale_sigma >= 0 &&
-                                             refine.relative_scale_sigma <= kRoughScaleRatio)) {
-      const std::optional<double>& distance = pairs[k].prior.distance;
-      const bool stated = distance.has_value() && *distance > 0;
-      SetUndeterminedLength(stated ? *distance : kLengthWithoutScale, &pose, &refine);
-      ++(stated ? num_stated : num_unknown);
-    }
-    const BetweenFactor edge = G2oEdge(pose, refine);
-    if (!open) {
-      world_from_body = Pose();
-      add_vertex();
-      open = true;
-    }
-    world_from_body = world_from_body * edge.measurement;
-    add_vertex();
-    ++num_edges;
-    edges << "EDGE_SE3:QUAT " << num_vertices - 2 << " " << num_vertices - 1;
-    WritePose(edge.measurement, &edges);
-    for (int i = 0; i < 6; ++i) {
-      for (int j = i; j < 6; ++j) edges << " " << edge.information(i, j);
-    }
-    edges << "\n";
+    graph.Note(pairs[k].name + ": " + why + ": no edge" +
+               (graph.open() ? ", the trajectory ends at vertex " + graph.LastVertex() : ""));
+    graph.Close();
   }
-  if (num_stated + num_unknown > 0) {
-    note("|t| is not determined in " + std::to_string(num_stated + num_unknown) + " of " +
-         std::to_string(num_edges) + " edges and has no information: " +
-         std::to_string(num_stated) + " have the distance of their file, " +
-         std::to_string(num_unknown) + " are of " + CsvNumber(kLengthWithoutScale) + " m");
+  const std::string of_edges = " of " + std::to_string(graph.num_edges()) + " edges";
+  if (counts.stated + counts.unknown > 0) {
+    graph.Note("|t| is not determined in " + std::to_string(counts.stated + counts.unknown) +
+               of_edges + " and has no information: " + std::to_string(counts.stated) +
+               " have the distance of their file, " + std::to_string(counts.unknown) + " are of " +
+               CsvNumber(kLengthWithoutScale) + " m");
   }
-  if (num_standing > 0) {
-    note("the rig stands still in " + std::to_string(num_standing) + " of " +
-         std::to_string(num_edges) + " edges, which have no translation");
+  if (counts.standing > 0) {
+    graph.Note("the rig stands still in " + std::to_string(counts.standing) + of_edges +
+               ", which have no translation");
   }
-  return vertices.str() + edges.str();
+  return graph.Text();
 }
 
 }  // namespace rigel

@@ -7,12 +7,12 @@
 
 #include "rigel/core/rig_centre.h"
 #include "rigel/problems/io/csv.h"
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/printable.h"
 
 namespace rigel {
 namespace {
 
-// A stated distance within so many of its sigma, and a centimetre, is consistent with zero.
+// Sigmas. A stated distance up to this and kStillMetres more is consistent with zero.
 constexpr double kStillSigmas = 3.0;
 
 struct Step {
@@ -58,7 +58,7 @@ Step StepOf(const FramePair& pair, const MotionEstimate& e, bool has_inter) {
       step.raw = Standing(step.raw, refine);
       return step;
     }
-    // -1 and NaN are not known, either.
+    // A sigma of -1 or NaN is unknown.
     has_length = refine.scale_observable || (refine.relative_scale_sigma >= 0 &&
                                              refine.relative_scale_sigma <= kRoughScaleRatio);
   }
@@ -78,7 +78,7 @@ Step StepOf(const FramePair& pair, const MotionEstimate& e, bool has_inter) {
 
 void Append(const Pose& f2_from_f1, std::vector<Pose>* world_from_body) {
   const Pose next = world_from_body->back() * f2_from_f1.Inverse();
-  // Through a quaternion: rounding does not add up to something that is no rotation.
+  // Through a quaternion, so that rounding errors do not accumulate in R.
   world_from_body->push_back(Pose::FromQuaternion(next.Quaternion(), next.t));
 }
 
@@ -139,14 +139,13 @@ std::vector<Trajectory> ChainMotions(const std::vector<FramePair>& pairs,
   for (size_t k = 0; k < pairs.size(); ++k) {
     const std::string gap = open ? WhyNotNext(pairs, positions, k) : "";
     if (!gap.empty()) {
-      notes->push_back(
-          PrintablePath(pairs[k].name + ": " + gap + ": the trajectory ended before it"));
+      notes->push_back(Printable(pairs[k].name + ": " + gap + ": the trajectory ended before it"));
       close();
     }
     const Step step = StepOf(pairs[k], estimates[k], has_inter[k] != 0);
     if (!step.why_not.empty()) {
-      notes->push_back(PrintablePath(pairs[k].name + ": " + step.why_not + ": a gap" +
-                                     (open ? ", the trajectory ends before it" : "")));
+      notes->push_back(Printable(pairs[k].name + ": " + step.why_not + ": a gap" +
+                                 (open ? ", the trajectory ends before it" : "")));
       close();
       continue;
     }

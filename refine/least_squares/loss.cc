@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "rigel/core/enum_names.h"
+
 namespace rigel {
 namespace {
 
@@ -19,33 +21,17 @@ class TruncatedLoss : public ceres::LossFunction {
   double scale2_;
 };
 
-constexpr struct {
-  LossKind kind;
-  const char* name;
-} kNames[] = {{LossKind::kNone, "none"},
-              {LossKind::kHuber, "huber"},
-              {LossKind::kCauchy, "cauchy"},
-              {LossKind::kTukey, "tukey"},
-              {LossKind::kTruncated, "truncated"}};
+constexpr EnumName<LossKind> kLossNames[] = {{LossKind::kNone, "none"},
+                                             {LossKind::kHuber, "huber"},
+                                             {LossKind::kCauchy, "cauchy"},
+                                             {LossKind::kTukey, "tukey"},
+                                             {LossKind::kTruncated, "truncated"}};
 
 }  // namespace
 
-const char* LossName(LossKind kind) {
-  for (const auto& entry : kNames) {
-    if (entry.kind == kind) return entry.name;
-  }
-  return "unknown";
-}
+const char* LossName(LossKind kind) { return NameOf(kLossNames, kind); }
 
-bool ParseLoss(std::string_view name, LossKind* kind) {
-  for (const auto& entry : kNames) {
-    if (name == entry.name) {
-      *kind = entry.kind;
-      return true;
-    }
-  }
-  return false;
-}
+bool ParseLoss(std::string_view name, LossKind* kind) { return FindValue(kLossNames, name, kind); }
 
 std::unique_ptr<ceres::LossFunction> MakeLoss(LossKind kind, double scale) {
   switch (kind) {

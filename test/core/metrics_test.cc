@@ -55,6 +55,13 @@ TEST(Metrics, ScaleErrorIsAFractionOfTheTruth) {
   EXPECT_TRUE(std::isnan(ScaleError(Vector3d::Zero(), t)));
 }
 
+TEST(Metrics, AngleBetweenDirectionsOfAnyLength) {
+  EXPECT_DOUBLE_EQ(AngleBetween({2, 0, 0}, {0, 0, 3}), std::acos(0.0));
+  EXPECT_DOUBLE_EQ(AngleBetween({1, 0, 0}, {-5, 0, 0}), std::acos(-1.0));
+  EXPECT_DOUBLE_EQ(AngleBetween({1, 0, 0}, {1, 1e-9, 0}), 1e-9);
+  EXPECT_EQ(AngleBetween({1, 0, 0}, Vector3d::Zero()), 0.0);
+}
+
 TEST(Metrics, NanGoesThrough) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Vector3d t(1, 2, 3);

@@ -47,5 +47,16 @@ TEST(Statistics, NegativeNumbers) {
   EXPECT_DOUBLE_EQ(s->rms, std::sqrt(14.0 / 3.0));
 }
 
+TEST(Statistics, WhatDoesNotExistHasNoMedianAndNoEfficiency) {
+  const auto errors = ComputeStatistics({3, 4});
+  const auto bounds = ComputeStatistics({1, 7});
+  EXPECT_EQ(MedianOf(errors), 3.5);
+  EXPECT_FALSE(MedianOf(std::nullopt).has_value());
+  EXPECT_DOUBLE_EQ(*Efficiency(errors, bounds), std::sqrt(0.5));
+  EXPECT_FALSE(Efficiency(std::nullopt, bounds).has_value());
+  EXPECT_FALSE(Efficiency(errors, std::nullopt).has_value());
+  EXPECT_FALSE(Efficiency(errors, ComputeStatistics({0.0})).has_value());
+}
+
 }  // namespace
 }  // namespace rigel

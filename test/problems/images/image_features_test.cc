@@ -1,5 +1,6 @@
 // Key points are where they should be, to a fraction of a pixel; matches are those of the scene.
 #include "rigel/problems/images/image_features.h"
+#include "rigel/problems/images/feature_matching.h"
 
 #include <algorithm>
 #include <cmath>

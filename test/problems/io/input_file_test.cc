@@ -131,6 +131,22 @@ TEST_F(InputFile, ByteOrderMarksAreSkippedOrTold) {
   }
 }
 
+TEST_F(InputFile, BytesAreReadAsTheyAre) {
+  const std::string with_nul("a\0b", 3);
+  for (const std::string& text : {with_nul, Gzip(with_nul), std::string()}) {
+    InputBytes bytes;
+    std::string error;
+    ASSERT_TRUE(ReadBytes(Write(text), &bytes, &error, 1000)) << error;
+    EXPECT_EQ(bytes.text(), text);
+  }
+  InputBytes bytes;
+  std::string error;
+  EXPECT_FALSE(ReadBytes(Write("12345"), &bytes, &error, 4));
+  EXPECT_THAT(error, EndsWith("/a: 5 bytes, expected no more than 4 bytes"));
+  EXPECT_FALSE(ReadBytes(dir_ / "none", &bytes, &error, 4));
+  EXPECT_THAT(error, EndsWith("/none: cannot be opened: No such file or directory"));
+}
+
 TEST_F(InputFile, LinesOfFramesKeepTheirPlaces) {
   std::vector<TextLine> lines;
   std::string error;

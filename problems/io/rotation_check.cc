@@ -1,0 +1,12 @@
+#include "rigel/problems/io/rotation_check.h"
+
+#include <Eigen/LU>
+
+namespace rigel {
+
+bool IsRotation(const Eigen::Matrix3d& R) {
+  const Eigen::Matrix3d off = R.transpose() * R - Eigen::Matrix3d::Identity();
+  return off.cwiseAbs().maxCoeff() <= kMaxRotationError && R.determinant() > 0;
+}
+
+}  // namespace rigel
