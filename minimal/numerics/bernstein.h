@@ -2,11 +2,17 @@
 // variations of the coefficients bound the number of roots inside (Descartes' rule; Lane and
 // Riesenfeld 1981).
 //
-// Coefficients of the power basis ascend, as in polynomial.h. No heap.
+// Coefficients of the power basis ascend, as in polynomial.h. A degree is an int, or the constant
+// Known<N> where the compiler shall know it. No heap.
 #ifndef RIGEL_MINIMAL_NUMERICS_BERNSTEIN_H_
 #define RIGEL_MINIMAL_NUMERICS_BERNSTEIN_H_
 
+#include <type_traits>
+
 namespace rigel::polynomial_internal {
+
+template <int N>
+using Known = std::integral_constant<int, N>;
 
 // 1 / C(N, j).
 template <int N>
@@ -23,7 +29,8 @@ struct InverseBinomials {
 
 // Bernstein coefficients b[0..n] on (0, 1) of the polynomial c[0..n]; `inverse` are the
 // InverseBinomials of n.
-inline void BernsteinOnUnitInterval(int n, const double* c, const double* inverse, double* b) {
+template <class Degree>
+inline void BernsteinOnUnitInterval(Degree n, const double* c, const double* inverse, double* b) {
   // b_k = sum_j C(k, j) / C(n, j) c_j, by running sums.
   for (int j = 0; j <= n; ++j) b[j] = c[j] * inverse[j];
   for (int j = 1; j <= n; ++j) {
@@ -33,7 +40,8 @@ inline void BernsteinOnUnitInterval(int n, const double* c, const double* invers
 
 // De Casteljau's algorithm at the middle: the coefficients of the left half replace b[0..n], those
 // of the right half are written to `right`.
-inline void HalveBernstein(int n, double* b, double* right) {
+template <class Degree>
+inline void HalveBernstein(Degree n, double* b, double* right) {
   for (int k = 0; k <= n; ++k) right[k] = b[k];
   for (int k = 1; k <= n; ++k) {
     b[k - 1] = right[0];

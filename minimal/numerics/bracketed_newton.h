@@ -39,7 +39,8 @@ template <int N, int kLanes>
 class BracketedNewton {
  public:
   // The brackets are pieces of the polynomial c[0..n], n <= N; `count` is at least 1.
-  BracketedNewton(const double* c, int n, const Bracket* brackets, int count)
+  template <class Degree>
+  BracketedNewton(const double* c, Degree n, const Bracket* brackets, int count)
       : brackets_(brackets), count_(count) {
     for (int l = 0; l < kLanes; ++l) {
       // Lanes that are not used repeat the first.
@@ -62,7 +63,7 @@ class BracketedNewton {
     for (int n = 0; n < limits.max_steps && left > 0; ++n) {
       double value[kLanes], next[kLanes];
       NewtonSteps(value, next);
-      for (int l = 0; l < count_; ++l) {
+      for (int l = 0; l < kLanes; ++l) {
         if (done_[l]) continue;
         Advance(limits, l, value[l], next[l]);
         left -= done_[l] ? 1 : 0;

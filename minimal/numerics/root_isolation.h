@@ -30,7 +30,7 @@ struct BernsteinPiece {
   // Of c on (0, 1), where c(1) = `at_one`.
   BernsteinPiece(const double* c, double at_one) : low(0.0), width(1.0) {
     constexpr InverseBinomials<N> kInverse;
-    BernsteinOnUnitInterval(N, c, kInverse.value, b);
+    BernsteinOnUnitInterval(Known<N>(), c, kInverse.value, b);
     b[N] = at_one;
   }
 
@@ -38,7 +38,7 @@ struct BernsteinPiece {
 
   // The left half replaces the piece.
   void Halve(BernsteinPiece* right) {
-    HalveBernstein(N, b, right->b);
+    HalveBernstein(Known<N>(), b, right->b);
     width *= 0.5;
     right->low = low + width;
     right->width = width;
@@ -166,7 +166,7 @@ template <int N>
 inline void RootsInBrackets(const double* c, const Bracket* brackets, int count, double* roots) {
   constexpr int kLanes = (N + 1) / 2 * 2;             // whole registers of two
   constexpr NewtonLimits kLimits = {100, 1e-9, 0.0};  // the error left is the step squared
-  if (count > 0) BracketedNewton<N, kLanes>(c, N, brackets, count).Find(kLimits, roots);
+  if (count > 0) BracketedNewton<N, kLanes>(c, Known<N>(), brackets, count).Find(kLimits, roots);
 }
 
 // The bracket (0, 1) of the only root there, of p with p(1) = `at_one`.

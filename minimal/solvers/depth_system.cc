@@ -127,7 +127,7 @@ void DepthSystem<kModel>::SetPlanar(const PreparedMatches& matches, const int* s
 }
 
 template <RotationModel kModel>
-void DepthSystem<kModel>::Minor(int i, int j, double* m) const {
+inline void DepthSystem<kModel>::Minor(int i, int j, double* m) const {
   constexpr int D = kEntryDegree;
   for (int k = 0; k <= 2 * D; ++k) m[k] = 0.0;
   for (int a = 0; a <= D; ++a) {
@@ -138,7 +138,7 @@ void DepthSystem<kModel>::Minor(int i, int j, double* m) const {
 }
 
 template <RotationModel kModel>
-void DepthSystem<kModel>::AddCofactor(int r, int i, int j, double* coefficients) const {
+inline void DepthSystem<kModel>::AddCofactor(int r, int i, int j, double* coefficients) const {
   double m[2 * kEntryDegree + 1];
   Minor(i, j, m);
   for (int a = 0; a <= LastColumnDegree(); ++a) {
@@ -148,7 +148,7 @@ void DepthSystem<kModel>::AddCofactor(int r, int i, int j, double* coefficients)
 }
 
 template <RotationModel kModel>
-bool DepthSystem<kModel>::Moves() const {
+inline bool DepthSystem<kModel>::Moves() const {
   for (int row = 0; row < (planar_ ? 2 : 3); ++row) {
     // As a rule the first entry decides.
     for (int k = 0; k <= kEntryDegree; ++k) {
