@@ -124,7 +124,7 @@ bool HoldsStaticMatches(const FramePair& clean, const Pose& pose, double thresho
 }
 
 RefineOptions RefinementOf(const Task& task, const FramePair& pair) {
-  RefineOptions refine = task.estimate.refine;
+  RefineOptions refine(task.estimate.refine);
   refine.prior_kind = FindSolver(task.estimate.solver)->prior;
   refine.threshold_px = task.estimate.ransac.threshold_px;
   refine.noise_px = pair.noise_px;
@@ -277,8 +277,6 @@ const std::vector<Variant>& Variants() {
       {"no PROSAC", [](EstimateOptions* o) { o->ransac.prosac = false; }},
       {"no early termination", [](EstimateOptions* o) { o->ransac.early_termination = false; }},
       {"no bail-out test", [](EstimateOptions* o) { o->ransac.bail_out = false; }},
-      {"MAGSAC++", [](EstimateOptions* o) { o->ransac.score = ScoreKind::kMagsac; }},
-      {"spread samples", [](EstimateOptions* o) { o->ransac.spread_samples = true; }},
   };
   return variants;
 }
