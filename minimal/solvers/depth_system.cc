@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rigel/minimal/solvers/baseline.h"
+
 namespace rigel {
 namespace {
 
@@ -251,8 +253,6 @@ void DepthSystem<kModel>::AddSolution(const PreparedMatches& matches, double z,
 
   const double* x1 = reference_->x1;
   const double* x2 = reference_->x2;
-  const double* s1 = reference_->s1;
-  const double* s2 = reference_->s2;
   // The baseline of the reference's cameras, w times too long: w b = d2 x2 - d1 R x1. Components,
   // as a vector written by them cannot be read back whole without waiting.
   const double bx = v[1] * x2[0] - v[0] * (c * x1[0] + s * x1[2]);
@@ -262,13 +262,13 @@ void DepthSystem<kModel>::AddSolution(const PreparedMatches& matches, double z,
   const bool has_scale =
       std::abs(v[2]) > kNegligible * depth && (!deflated_ || std::abs(z) > kNoTurn);
 
-  double tx, ty, tz;
+  Eigen::Vector3d t;
   if (has_scale && deflated_) {
     // t = b + (I - R) s, both divided by z first: finite for any z.
+    const double* s1 = reference_->s1;
     const double scale = z / v[2];
-    tx = scale * bx + z * (versine_over_z * s1[0] - s_over_z * s1[2]);
-    ty = scale * by;
-    tz = scale * bz + z * (s_over_z * s1[0] + versine_over_z * s1[2]);
+    t = {scale * bx + z * (versine_over_z * s1[0] - s_over_z * s1[2]), scale * by,
+         scale * bz + z * (s_over_z * s1[0] + versine_over_z * s1[2])};
   } else {
     double scale;
     if (has_scale) {
@@ -279,13 +279,11 @@ void DepthSystem<kModel>::AddSolution(const PreparedMatches& matches, double z,
       // The sign that puts the reference in front of its cameras.
       scale = (v[0] + v[1] >= 0 ? 1.0 : -1.0) / norm;
     }
-    tx = scale * bx + s2[0] - (c * s1[0] + s * s1[2]);
-    ty = scale * by + s2[1] - s1[1];
-    tz = scale * bz + s2[2] - (c * s1[2] - s * s1[0]);
+    t = TranslationOfBaseline(*reference_, c, s, scale * bx, scale * by, scale * bz);
   }
   Solution& solution = solutions->Append();
   solution.R = matches.alignment().Rotation(c, s);
-  solution.t = matches.alignment().ToFrame2({tx, ty, tz});
+  solution.t = matches.alignment().ToFrame2(t);
   solution.has_scale = has_scale;
 }
 

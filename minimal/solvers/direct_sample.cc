@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "rigel/minimal/numerics/laplace.h"
-#include "rigel/minimal/solvers/unit_baseline.h"
+#include "rigel/minimal/solvers/baseline.h"
 
 namespace rigel {
 namespace {

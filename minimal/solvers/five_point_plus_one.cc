@@ -7,6 +7,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "rigel/core/cheirality.h"
+#include "rigel/core/depth_terms.h"
 #include "rigel/core/pose.h"
 #include "rigel/minimal/numerics/polynomial.h"
 
@@ -16,9 +18,6 @@ namespace {
 // Below this, relative to the rest, the sixth match says nothing about the scale: the rotation
 // that it is multiplied by is known to a few digits less than a double has.
 constexpr double kBlind = 1e-7;
-
-// Sine of the parallax below which a point tells no depth, and has no vote (cheirality.h).
-constexpr double kNoParallax = 1e-9;
 
 // Polynomials in (x, y, z) by their coefficients:
 //   linear     x, y, z, 1
@@ -164,7 +163,7 @@ void EssentialConstraints(const double basis[4][9], Cubic rows[10]) {
 
 // Brings the largest entry of column p to row p, makes it 1 and clears the column below it. False
 // if there is none.
-bool EliminateColumn(int p, double** row) {
+bool ClearColumn(int p, double** row) {
   // Of entries near 1, as the basis is orthonormal: less is rounding, and the constraints
   // dependent.
   constexpr double kMinPivot = 1e-10;
@@ -191,7 +190,7 @@ bool Eliminate(Cubic rows[10]) {
   double* row[10];
   for (int r = 0; r < 10; ++r) row[r] = rows[r];
   for (int p = 0; p < 10; ++p) {
-    if (!EliminateColumn(p, row)) return false;
+    if (!ClearColumn(p, row)) return false;
   }
   for (int p = 9; p > 4; --p) {
     for (int r = 4; r < p; ++r) {
@@ -271,6 +270,15 @@ Eigen::Matrix3d Orthonormalized(const Eigen::Matrix3d& M) {
   return R;
 }
 
+// Counts a match whose rays are g and f in f2 for the unit baseline b or for -b, whichever has it
+// in front of both cameras.
+void Vote(const Eigen::Vector3d& g, const Eigen::Vector3d& f, const Eigen::Vector3d& b, int* votes,
+          int* votes_against) {
+  const DepthTerms depth = DepthTermsOf(g[0], g[1], g[2], f[0], f[1], f[2], b[0], b[1], b[2]);
+  *votes += depth.n1 > kNoParallax && depth.n2 > kNoParallax;
+  *votes_against += depth.n1 < -kNoParallax && depth.n2 < -kNoParallax;
+}
+
 // R and the unit vector b of E = [b]x R up to sign that have most of the five points in front of
 // both cameras. False if those are fewer than three: no motion, or five that do not agree.
 bool Decompose(const Eigen::Matrix3d& E, const Eigen::Vector3d* x1, const Eigen::Vector3d* x2,
@@ -294,19 +302,8 @@ bool Decompose(const Eigen::Matrix3d& E, const Eigen::Vector3d* x1, const Eigen:
   for (int k = 0; k < 5; ++k) {
     const Eigen::Vector3d g = *R * x1[k];
     const Eigen::Vector3d& f = x2[k];
-    const Eigen::Vector3d n = g.cross(f);
-    const Eigen::Vector3d fb = f.cross(*b);
-    const Eigen::Vector3d gb = g.cross(*b);
-    // d1 and d2 times |n|^2 (cheirality.cc), and the same with 2 (b.g) b - g for g.
-    const double d1 = fb.dot(n);
-    const double d2 = gb.dot(n);
-    const double twice = 2.0 * b->dot(g);
-    const double e1 = -twice * fb.squaredNorm() - d1;
-    const double e2 = twice * gb.dot(fb) + d2;
-    votes[0] += d1 > kNoParallax && d2 > kNoParallax;
-    votes[1] += d1 < -kNoParallax && d2 < -kNoParallax;
-    votes[2] += e1 > kNoParallax && e2 > kNoParallax;
-    votes[3] += e1 < -kNoParallax && e2 < -kNoParallax;
+    Vote(g, f, *b, &votes[0], &votes[1]);
+    Vote(2.0 * b->dot(g) * *b - g, f, *b, &votes[2], &votes[3]);
   }
   int choice = 0;
   for (int k = 1; k < 4; ++k) {

@@ -197,8 +197,7 @@ double SolveTranslation(const PreparedMatches& matches, const int* sample, int s
     int votes = 0;
     solution->t = arm + b;
     for (int m = 0; m < sample_size; ++m) {
-      const Cheirality c = TestCheirality(*solution, matches.rays(sample[m]));
-      votes += (c == Cheirality::kInFront) - (c == Cheirality::kBehind);
+      votes += CheiralityVote(*solution, matches.rays(sample[m]));
     }
     if (votes < 0) solution->t = arm - b;
   }

@@ -6,6 +6,7 @@
 #include <Eigen/QR>
 
 #include "rigel/core/cheirality.h"
+#include "rigel/core/epipolar.h"
 #include "rigel/core/metrics.h"
 
 namespace rigel {
@@ -69,17 +70,14 @@ void SixPointSystem::Add(const Eigen::Matrix3d& R, const Eigen::Vector4d& v) {
     solution.t = v.head<3>() / v[3];
     double largest = 0.0;
     for (const RayPair* pair : rays_) {
-      largest = std::max(largest, (R * pair->ray1.s + solution.t - pair->ray2.s).norm());
+      largest = std::max(largest, Baseline(solution, pair->ray1.s, pair->ray2.s).norm());
     }
     if (!(largest > kNoMotion * spread_)) return;
     if (pure_translation_ && RotationError(Eigen::Matrix3d::Identity(), R) < kNoRotation) return;
   } else {
     solution.t = v.head<3>().normalized();
     int votes = 0;
-    for (const RayPair* pair : rays_) {
-      const Cheirality c = TestCheirality(solution, *pair);
-      votes += (c == Cheirality::kInFront) - (c == Cheirality::kBehind);
-    }
+    for (const RayPair* pair : rays_) votes += CheiralityVote(solution, *pair);
     if (votes < 0) solution.t = -solution.t;
   }
   if (!solution.AllFinite()) return;
