@@ -45,9 +45,12 @@ class BracketedNewton {
     for (int l = 0; l < kLanes; ++l) {
       // Lanes that are not used repeat the first.
       const Bracket& bracket = brackets[l < count ? l : 0];
+      // All of them before they go to their lane, which is faster than one by one.
+      double piece[N + 1];
       for (int k = 0; k <= n; ++k) {
-        p_[k][l] = PieceCoefficient(c, n, bracket.reversed, bracket.mirrored, k);
+        piece[k] = PieceCoefficient(c, n, bracket.reversed, bracket.mirrored, k);
       }
+      for (int k = 0; k <= n; ++k) p_[k][l] = piece[k];
       for (int k = n + 1; k <= N; ++k) p_[k][l] = 0.0;
       x_[l] = bracket.guess;
       low_[l] = bracket.low;
