@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <sstream>
 
 #include <gflags/gflags.h>
 
@@ -15,6 +16,9 @@
 #include "rigel/problems/io/table.h"
 #include "rigel/problems/scenes/prior_source.h"
 #include "rigel/refine/solver_choice.h"
+#include "rigel/tools/outputs.h"
+#include "rigel/tools/progress.h"
+#include "rigel/tools/solver_names.h"
 #include "rigel/tools/tool.h"
 
 DEFINE_string(solvers, "", "names of solvers, comma separated; all if empty");
@@ -70,13 +74,12 @@ constexpr char kUsage[] =
     "of\n"
     "the processor.\n";
 
-// The first of these flags that was given; empty if none was.
-std::string FirstGiven(const std::vector<std::string>& flags) {
-  const std::vector<std::string> given = GivenFlags();
-  for (const std::string& flag : flags) {
-    if (std::find(given.begin(), given.end(), flag) != given.end()) return flag;
-  }
-  return "";
+std::vector<OutputFlag> Outputs() { return {{"json", FLAGS_json}}; }
+
+// The table, and the report of --json. False with a message on stderr if one cannot be written.
+bool Write(const std::string& table, const std::string& json) {
+  const bool ok = PrintTable(table, Outputs());
+  return WriteOutput(FLAGS_json, json) && ok;
 }
 
 // Reads all files of --matches with their prior. False if any could not be read.
@@ -99,196 +102,185 @@ bool ReadPairs(const PriorSourceOptions& prior, std::vector<FramePair>* pairs) {
   return errors.empty() && !pairs->empty();
 }
 
-bool SolversAreKnown(const std::vector<std::string>& names, bool with_auto, std::string* error) {
-  if (!FLAGS_solvers.empty() && names.empty()) {
-    *error = "--solvers=" + FLAGS_solvers + ": names no solver";
-    return false;
-  }
-  for (const std::string& name : names) {
-    if (FindSolver(name) != nullptr || (with_auto && name == kAutoSolver)) continue;
-    *error = "--solvers: there is no solver '" + name + "'; expected some of " +
-             (with_auto ? SolverNamesWithAuto() : SolverNames());
-    return false;
-  }
-  return true;
-}
-
 int RunHostile() {
   HostileBenchmarkOptions options;
-  options.solvers = SplitCommas(FLAGS_solvers);
   options.pairs = FLAGS_pairs;
   options.seed = FLAGS_seed;
   const std::string flag = FirstGiven({"matches", "prior"});
   if (!flag.empty()) return UsageError("--" + flag + ": --ransac=hostile makes pairs of its own");
   if (FLAGS_pairs < 1) return UsageError("--pairs: expected at least 1");
   std::string error;
-  if (!SolversAreKnown(options.solvers, /*with_auto=*/true, &error)) return UsageError(error);
+  if (!ParseSolvers(FLAGS_solvers, IsSolverName, SolverNamesWithAuto(), &options.solvers, &error)) {
+    return UsageError(error);
+  }
+
   std::vector<HostileBenchmarkRow> rows;
   {
-    Progress progress("rigel_benchmark", CountHostileRows(options));
+    Progress progress(ProgramName(), CountHostileRows(options));
     rows = BenchmarkHostile(options, [&] { progress.Step(); });
   }
-  bool ok = true;
-  if (FLAGS_json != "-") {
-    std::cout << HostileBenchmarkTable(rows);
-    ok = FlushStdout();
+  return ExitCode(Write(HostileBenchmarkTable(rows), HostileBenchmarkJson(rows, options)));
+}
+
+bool RansacOptionsFromFlags(RansacBenchmarkOptions* options, PriorSourceOptions* prior,
+                            std::string* error) {
+  options->pairs = FLAGS_pairs;
+  options->seed = FLAGS_seed;
+  if (!ParseRansacExperiment(FLAGS_ransac, &options->experiment)) {
+    return WrongValue("ransac", FLAGS_ransac, "speed, outliers, ablation, moving or hostile",
+                      error);
   }
-  ok = WriteOutput(FLAGS_json, HostileBenchmarkJson(rows, options)) && ok;
-  return ok ? kExitDone : kExitFailed;
+  const bool files = IsGiven("matches");
+  if (files && options->experiment != RansacExperiment::kSpeed) {
+    return Refuse("--matches: --ransac=" + FLAGS_ransac + " makes scenes of its own", error);
+  }
+  if (files && IsGiven("pairs")) return Refuse("--pairs: the pairs are those of --matches", error);
+  if (!files && IsGiven("prior")) {
+    return Refuse("--prior: it is of --matches; the scenes have an exact one", error);
+  }
+  if (!ParsePriorSource(FLAGS_prior, &prior->source)) {
+    return WrongValue("prior", FLAGS_prior, "file, body or truth", error);
+  }
+  if (FLAGS_pairs < 1) return Refuse("--pairs: expected at least 1", error);
+  if (files) options->experiment = RansacExperiment::kFiles;
+  const auto is_known = [](const std::string& name) { return FindSolver(name) != nullptr; };
+  return ParseSolvers(FLAGS_solvers, is_known, SolverNames(), &options->solvers, error);
 }
 
 int RunRansac() {
-  if (FLAGS_ransac == "hostile") return RunHostile();
   RansacBenchmarkOptions options;
-  options.pairs = FLAGS_pairs;
-  options.seed = FLAGS_seed;
-  if (!ParseRansacExperiment(FLAGS_ransac, &options.experiment)) {
-    return UsageError("--ransac=" + FLAGS_ransac +
-                      ": expected speed, outliers, ablation, moving or hostile");
-  }
-  const bool files = !FirstGiven({"matches"}).empty();
-  if (files && options.experiment != RansacExperiment::kSpeed) {
-    return UsageError("--matches: --ransac=" + FLAGS_ransac + " makes scenes of its own");
-  }
-  if (files && !FirstGiven({"pairs"}).empty()) {
-    return UsageError("--pairs: the pairs are those of --matches");
-  }
-  if (!files && !FirstGiven({"prior"}).empty()) {
-    return UsageError("--prior: it is of --matches; the scenes have an exact one");
-  }
   PriorSourceOptions prior;
-  if (!ParsePriorSource(FLAGS_prior, &prior.source)) {
-    return UsageError("--prior=" + FLAGS_prior + ": expected file, body or truth");
-  }
-  if (FLAGS_pairs < 1) return UsageError("--pairs: expected at least 1");
-  options.solvers = SplitCommas(FLAGS_solvers);
   std::string error;
-  if (!SolversAreKnown(options.solvers, /*with_auto=*/false, &error)) return UsageError(error);
+  if (!RansacOptionsFromFlags(&options, &prior, &error)) return UsageError(error);
+
   bool ok = true;
   std::vector<RansacBenchmarkRow> rows;
-  if (files) {
-    options.experiment = RansacExperiment::kFiles;
+  if (options.experiment == RansacExperiment::kFiles) {
     std::vector<FramePair> pairs;
     std::vector<std::string> ignored;  // told when they are read
-    if (!OutputsAreNoInputs({{"json", FLAGS_json}}, ListMatchFiles(FLAGS_matches, &ignored),
-                            &error)) {
+    if (!OutputsAreNoInputs(Outputs(), ListMatchFiles(FLAGS_matches, &ignored), &error)) {
       return UsageError(error);
     }
     ok = ReadPairs(prior, &pairs);
     if (pairs.empty()) return kExitFailed;
     rows = BenchmarkRansacOnFiles(options, pairs);
   } else {
-    Progress progress("rigel_benchmark", CountRansacRows(options));
+    Progress progress(ProgramName(), CountRansacRows(options));
     rows = BenchmarkRansac(options, [&] { progress.Step(); });
   }
-  if (!IsStdout(FLAGS_json)) {
-    std::cout << RansacBenchmarkTable(rows, options.experiment);
-    ok = FlushStdout() && ok;
-  }
-  ok = WriteOutput(FLAGS_json, RansacBenchmarkJson(rows, options)) && ok;
-  return ok ? kExitDone : kExitFailed;
+  ok = Write(RansacBenchmarkTable(rows, options.experiment), RansacBenchmarkJson(rows, options)) &&
+       ok;
+  return ExitCode(ok);
+}
+
+std::string NoPointInView() {
+  std::ostringstream message;
+  message << "with --rotation_deg=" << FLAGS_rotation_deg << " hardly any point stays in view";
+  return message.str();
 }
 
 int RunRefinement() {
+  // Problems: some minutes. More are of no use, the medians have settled.
+  constexpr int kMostProblems = 200;
   RefineBenchmarkOptions options;
-  options.problems = std::min(FLAGS_trials, 200);
+  options.problems = std::min(FLAGS_trials, kMostProblems);
   options.rotation_deg = FLAGS_rotation_deg;
   options.seed = FLAGS_seed;
   const std::vector<RefineBenchmarkRow> rows = BenchmarkRefinement(options);
-  if (rows.empty()) {
-    std::cerr << "with --rotation_deg=" << FLAGS_rotation_deg
-              << " hardly any point stays in view\n";
-    return kExitFailed;
+  if (rows.empty()) return Failure(NoPointInView());
+  const std::string below = "\nmedian over the problems of the least of five repetitions; " +
+                            std::to_string(options.num_matches) +
+                            " matches, 0.5 px, start 1 deg off\n";
+  return ExitCode(Write(RefineBenchmarkTable(rows) + below, RefineBenchmarkJson(rows, options)));
+}
+
+bool SolverOptionsFromFlags(SolverBenchmarkOptions* options, std::string* error) {
+  const std::string flag = FirstGiven({"matches", "pairs", "prior"});
+  if (!flag.empty()) return Refuse("--" + flag + ": has no effect without --ransac", error);
+  options->num_cameras = FLAGS_num_cameras;
+  options->trials = FLAGS_trials;
+  options->rotation_deg = FLAGS_rotation_deg;
+  options->random_axis = FLAGS_random_axis;
+  options->seed = FLAGS_seed;
+  if (FLAGS_num_cameras < 1 || FLAGS_num_cameras > 4) {
+    return Refuse("--num_cameras: expected 1 to 4", error);
   }
+  if (FLAGS_trials < 1) return Refuse("--trials: expected at least 1", error);
+  if (!std::isfinite(FLAGS_rotation_deg)) return Refuse("--rotation_deg: expected a number", error);
+  if (FLAGS_refine && !FLAGS_solvers.empty())
+    return Refuse("--solvers: --refine times no solver", error);
+  return true;
+}
+
+// A solver of Rigel or, where they are built, of OpenGV; null if there is none of that name.
+const SolverInfo* FindSolverOrPeer(const std::string& name) {
+  for (const SolverInfo& peer : OpenGvPeers()) {
+    if (name == peer.name) return &peer;
+  }
+  return FindSolver(name);
+}
+
+bool SolversFromFlag(std::vector<const SolverInfo*>* solvers, std::string* error) {
+  std::vector<std::string> names;
+  const auto is_known = [](const std::string& name) { return FindSolverOrPeer(name) != nullptr; };
+  if (!ParseSolvers(FLAGS_solvers, is_known, SolverNames(), &names, error)) return false;
+  for (const std::string& name : names) solvers->push_back(FindSolverOrPeer(name));
+  if (!solvers->empty()) return true;
+  for (const SolverInfo& solver : SolverCatalogue()) solvers->push_back(&solver);
+  for (const SolverInfo& solver : OpenGvPeers()) solvers->push_back(&solver);
+  return true;
+}
+
+// False with a message on stderr if there was no problem to solve for one of them.
+bool TimeSolvers(const SolverBenchmarkOptions& options,
+                 const std::vector<const SolverInfo*>& solvers,
+                 std::vector<SolverBenchmarkRow>* rows) {
   bool ok = true;
-  if (!IsStdout(FLAGS_json)) {
-    std::cout << RefineBenchmarkTable(rows)
-              << "\nmedian over the problems of the least of five repetitions; "
-              << options.num_matches << " matches, 0.5 px, start 1 deg off\n";
-    ok = FlushStdout();
+  Progress progress(ProgramName(), static_cast<int>(solvers.size()));
+  for (const SolverInfo* solver : solvers) {
+    for (const SolverBenchmarkRow& row : BenchmarkSolver(*solver, options)) {
+      if (row.mean_us > 0) {
+        rows->push_back(row);
+      } else {
+        ok = false;
+        std::cerr << row.solver << ", " << row.matches << ": " << NoPointInView() << "\n";
+      }
+    }
+    progress.Step();
   }
-  ok = WriteOutput(FLAGS_json, RefineBenchmarkJson(rows, options)) && ok;
-  return ok ? kExitDone : kExitFailed;
+  return ok;
+}
+
+std::string SolverText(const std::vector<SolverBenchmarkRow>& rows, double reference_us) {
+  const std::string paper = PaperTable1(rows);
+  return SolverBenchmarkTable(rows) +
+         "\nreference kernel (4x4 LU solve by Eigen): " + FormatNumber(reference_us, 4) +
+         " us, for each ratio anew;\npreparing a match: " + FormatNumber(rows[0].prepare_us, 3) +
+         " us\n" + (paper.empty() ? "" : "\n" + paper);
 }
 
 int Run() {
+  SolverBenchmarkOptions options;
+  std::vector<const SolverInfo*> solvers;
   std::string error;
-  if (!OutputsDiffer({{"json", FLAGS_json}}, &error)) return UsageError(error);
-  if (!FirstGiven({"ransac"}).empty()) {
+  if (!OutputsDiffer(Outputs(), &error)) return UsageError(error);
+  if (IsGiven("ransac")) {
     const std::string flag =
         FirstGiven({"num_cameras", "random_axis", "refine", "rotation_deg", "trials"});
     if (!flag.empty()) return UsageError("--" + flag + ": has no effect with --ransac");
-    return RunRansac();
+    return FLAGS_ransac == "hostile" ? RunHostile() : RunRansac();
   }
-  const std::string flag = FirstGiven({"matches", "pairs", "prior"});
-  if (!flag.empty()) return UsageError("--" + flag + ": has no effect without --ransac");
-  SolverBenchmarkOptions options;
-  options.num_cameras = FLAGS_num_cameras;
-  options.trials = FLAGS_trials;
-  options.rotation_deg = FLAGS_rotation_deg;
-  options.random_axis = FLAGS_random_axis;
-  options.seed = FLAGS_seed;
-  if (FLAGS_num_cameras < 1 || FLAGS_num_cameras > 4)
-    return UsageError("--num_cameras: expected 1 to 4");
-  if (FLAGS_trials < 1) return UsageError("--trials: expected at least 1");
-  if (!std::isfinite(FLAGS_rotation_deg)) return UsageError("--rotation_deg: expected a number");
-  if (FLAGS_refine && !FLAGS_solvers.empty()) {
-    return UsageError("--solvers: --refine times no solver");
-  }
+  if (!SolverOptionsFromFlags(&options, &error)) return UsageError(error);
   if (FLAGS_refine) return RunRefinement();
-  std::vector<const SolverInfo*> solvers;
-  const std::vector<std::string> names = SplitCommas(FLAGS_solvers);
-  if (!FLAGS_solvers.empty() && names.empty()) {
-    return UsageError("--solvers=" + FLAGS_solvers + ": names no solver");
-  }
-  for (const std::string& name : names) {
-    const SolverInfo* found = FindSolver(name);
-    for (const SolverInfo& peer : OpenGvPeers()) {
-      if (name == peer.name) found = &peer;
-    }
-    solvers.push_back(found);
-    if (found == nullptr) {
-      return UsageError("--solvers: there is no solver '" + name + "'; expected some of " +
-                        SolverNames());
-    }
-  }
-  if (solvers.empty()) {
-    for (const SolverInfo& solver : SolverCatalogue()) solvers.push_back(&solver);
-    for (const SolverInfo& solver : OpenGvPeers()) solvers.push_back(&solver);
-  }
+  if (!SolversFromFlag(&solvers, &error)) return UsageError(error);
 
-  bool ok = true;
   std::vector<SolverBenchmarkRow> rows;
-  {
-    Progress progress("rigel_benchmark", static_cast<int>(solvers.size()));
-    for (const SolverInfo* solver : solvers) {
-      for (const SolverBenchmarkRow& row : BenchmarkSolver(*solver, options)) {
-        if (row.mean_us > 0) {
-          rows.push_back(row);
-        } else {
-          // There was no problem to solve.
-          ok = false;
-          std::cerr << row.solver << ", " << row.matches
-                    << ": with --rotation_deg=" << FLAGS_rotation_deg
-                    << " hardly any point stays in view\n";
-        }
-      }
-      progress.Step();
-    }
-  }
+  bool ok = TimeSolvers(options, solvers, &rows);
   if (rows.empty()) return kExitFailed;
-  const double reference = ReferenceKernelMicroseconds();
-  if (!IsStdout(FLAGS_json)) {
-    std::cout << SolverBenchmarkTable(rows)
-              << "\nreference kernel (4x4 LU solve by Eigen): " << FormatNumber(reference, 4)
-              << " us, for each ratio anew;\npreparing a match: "
-              << FormatNumber(rows[0].prepare_us, 3) << " us\n";
-    const std::string paper = PaperTable1(rows);
-    if (!paper.empty()) std::cout << "\n" << paper;
-    ok = FlushStdout() && ok;
-  }
-  ok = WriteOutput(FLAGS_json, SolverBenchmarkJson(rows, options, reference)) && ok;
-  return ok ? kExitDone : kExitFailed;
+  const double reference_us = ReferenceKernelMicroseconds();
+  ok =
+      Write(SolverText(rows, reference_us), SolverBenchmarkJson(rows, options, reference_us)) && ok;
+  return ExitCode(ok);
 }
 
 }  // namespace

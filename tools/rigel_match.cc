@@ -13,6 +13,7 @@
 #include "rigel/problems/images/kitti_sequence.h"
 #include "rigel/problems/images/sequence_matching.h"
 #include "rigel/problems/io/match_file.h"
+#include "rigel/tools/progress.h"
 #include "rigel/tools/tool.h"
 
 DEFINE_string(kitti_root, "",
@@ -53,85 +54,81 @@ constexpr char kUsage[] =
     "are undistorted. The files get times, truth and gravity where the data set has a ground\n"
     "truth. Frames count from 0; those of EuRoC are the images of one time.\n";
 
-int Run() {
-  SequenceMatchingOptions options;
-  std::string error;
-  const std::vector<std::string> given = GivenFlags();
-  const auto is_given = [&](const std::string& flag) {
-    return std::find(given.begin(), given.end(), flag) != given.end();
-  };
-  const bool kitti = !FLAGS_kitti_root.empty();
-  if (kitti && !FLAGS_euroc_root.empty()) {
-    return UsageError("--kitti_root and --euroc_root: expected one of them");
+bool IsKitti() { return !FLAGS_kitti_root.empty(); }
+
+bool DataSetFromFlags(EurocOptions* euroc, std::string* error) {
+  if (IsKitti() && !FLAGS_euroc_root.empty()) {
+    return Refuse("--kitti_root and --euroc_root: expected one of them", error);
   }
-  if (!kitti && FLAGS_euroc_root.empty()) {
-    return UsageError("--kitti_root or --euroc_root is missing: name the data set's directory");
+  if (!IsKitti() && FLAGS_euroc_root.empty()) {
+    return Refuse("--kitti_root or --euroc_root is missing: name the data set's directory", error);
   }
-  if (kitti && FLAGS_sequence.empty()) {
-    return UsageError("--sequence is missing: name a sequence, as 06");
+  if (IsKitti() && FLAGS_sequence.empty()) {
+    return Refuse("--sequence is missing: name a sequence, as 06", error);
   }
   if (FLAGS_sequence.find_first_of("/ \t\n\r") != std::string::npos || FLAGS_sequence == "." ||
       FLAGS_sequence == "..") {
-    return UsageError("--sequence: expected the name of a directory, without blanks and slashes");
+    return Refuse("--sequence: expected the name of a directory, without blanks and slashes",
+                  error);
   }
-  if (!kitti && is_given("sequence")) {
-    return UsageError("--sequence: has no effect with --euroc_root, which is one sequence");
+  if (!IsKitti() && IsGiven("sequence")) {
+    return Refuse("--sequence: has no effect with --euroc_root, which is one sequence", error);
   }
-  EurocOptions euroc;
-  if (is_given("sync_tolerance_ms")) {
-    if (kitti) {
-      return UsageError("--sync_tolerance_ms: KITTI has one time stamp for both images of a frame");
-    }
-    euroc.sync_tolerance_ms = FLAGS_sync_tolerance_ms;
-    if (!euroc.IsValid(&error)) return UsageError("--" + error);
+  if (!IsGiven("sync_tolerance_ms")) return true;
+  if (IsKitti()) {
+    return Refuse("--sync_tolerance_ms: KITTI has one time stamp for both images of a frame",
+                  error);
   }
-  if (FLAGS_output.empty()) return UsageError("--output is missing: name a directory");
-  if (!ParseFeatureType(FLAGS_features, &options.features.type)) {
-    return UsageError("--features=" + FLAGS_features + ": expected sift or orb");
-  }
-  if (is_given("last") && FLAGS_last < 0) return UsageError("--last: expected 0 or more");
-  if (FLAGS_threads < 1 || FLAGS_threads > 1024) return UsageError("--threads: expected 1 to 1024");
-  options.features.max_features = FLAGS_max_features;
-  options.features.ratio = FLAGS_ratio;
-  options.first = FLAGS_first;
-  options.last = FLAGS_last;
-  options.stride = FLAGS_stride;
-  options.num_threads = FLAGS_threads;
-  options.resume = FLAGS_resume;
-  if (!options.IsValid(&error)) return UsageError("--" + error);
+  euroc->sync_tolerance_ms = FLAGS_sync_tolerance_ms;
+  if (euroc->IsValid(error)) return true;
+  *error = "--" + *error;
+  return false;
+}
 
-  // Pairs run beside each other; threads of OpenCV within one would only be in their way. What
-  // OpenCV logs is said in the program's own words.
-  cv::setNumThreads(1);
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-
-  ImageSequence sequence;
-  if (kitti ? !ReadKittiSequence(FLAGS_kitti_root, FLAGS_sequence, &sequence, &error)
-            : !ReadEurocSequence(FLAGS_euroc_root, euroc, &sequence, &error)) {
-    std::cerr << error << "\n";
-    return kExitFailed;
+bool SettingsFromFlags(SequenceMatchingOptions* options, EurocOptions* euroc, std::string* error) {
+  if (!DataSetFromFlags(euroc, error)) return false;
+  if (FLAGS_output.empty()) {
+    return Refuse("--output is missing: name a directory", error);
   }
-  for (const std::string& note : sequence.notes) std::cerr << note << "\n";
-  if (std::none_of(sequence.frames.begin(), sequence.frames.end(),
+  if (!ParseFeatureType(FLAGS_features, &options->features.type)) {
+    return WrongValue("features", FLAGS_features, "sift or orb", error);
+  }
+  if (IsGiven("last") && FLAGS_last < 0) {
+    return WrongValue("last", std::to_string(FLAGS_last), "0 or more", error);
+  }
+  if (!CheckThreads(FLAGS_threads, 1, error)) return false;
+  options->features.max_features = FLAGS_max_features;
+  options->features.ratio = FLAGS_ratio;
+  options->first = FLAGS_first;
+  options->last = FLAGS_last;
+  options->stride = FLAGS_stride;
+  options->num_threads = FLAGS_threads;
+  options->resume = FLAGS_resume;
+  if (options->IsValid(error)) return true;
+  *error = "--" + *error;
+  return false;
+}
+
+// Says on stderr what the sequence lacks. False with a message if it cannot be read.
+bool ReadSequence(const EurocOptions& euroc, ImageSequence* sequence, std::string* error) {
+  if (IsKitti() ? !ReadKittiSequence(FLAGS_kitti_root, FLAGS_sequence, sequence, error)
+                : !ReadEurocSequence(FLAGS_euroc_root, euroc, sequence, error)) {
+    return false;
+  }
+  for (const std::string& note : sequence->notes) std::cerr << note << "\n";
+  if (std::none_of(sequence->frames.begin(), sequence->frames.end(),
                    [](const ImageFrame& frame) { return frame.world_from_body.has_value(); })) {
-    std::cerr << "sequence " << PrintablePath(sequence.name)
+    std::cerr << "sequence " << PrintablePath(sequence->name)
               << " has no ground truth: the files get no truth and no gravity\n";
   }
+  return true;
+}
 
-  std::unique_ptr<Progress> progress;
-  SequenceMatchingSummary summary;
-  const bool ran = MatchSequence(
-      options, sequence, FLAGS_output,
-      [&](int todo) { progress = std::make_unique<Progress>("rigel_match", todo); },
-      [&] { progress->Step(); }, &summary, &error);
-  progress.reset();
-  if (!ran) {
-    std::cerr << error << "\n";
-    return kExitFailed;
-  }
-  for (const std::string& note : summary.notes) std::cerr << note << "\n";
-  // A range of which the images are not there is told shortly.
+// Says on stderr what was written and what could not be.
+void Report(const SequenceMatchingSummary& summary) {
+  // Lines of messages: a range of which the images are not there is told shortly.
   constexpr size_t kMaxMissing = 5;
+  for (const std::string& note : summary.notes) std::cerr << note << "\n";
   const size_t shown = std::min(summary.missing.size(), kMaxMissing);
   for (size_t k = 0; k < shown; ++k) std::cerr << summary.missing[k] << "\n";
   if (summary.missing.size() > shown) {
@@ -143,7 +140,30 @@ int Run() {
   if (summary.kept > 0) std::cerr << ", kept " << summary.kept;
   if (failed > 0) std::cerr << "; " << failed << " could not be made";
   std::cerr << "\n";
-  return summary.errors.empty() && summary.missing.empty() ? kExitDone : kExitFailed;
+}
+
+int Run() {
+  SequenceMatchingOptions options;
+  EurocOptions euroc;
+  ImageSequence sequence;
+  std::string error;
+  if (!SettingsFromFlags(&options, &euroc, &error)) return UsageError(error);
+  // Pairs run beside each other; threads of OpenCV within one would only be in their way. What
+  // OpenCV logs is said in the program's own words.
+  cv::setNumThreads(1);
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  if (!ReadSequence(euroc, &sequence, &error)) return Failure(error);
+
+  std::unique_ptr<Progress> progress;
+  SequenceMatchingSummary summary;
+  const bool ran = MatchSequence(
+      options, sequence, FLAGS_output,
+      [&](int todo) { progress = std::make_unique<Progress>(ProgramName(), todo); },
+      [&] { progress->Step(); }, &summary, &error);
+  progress.reset();
+  if (!ran) return Failure(error);
+  Report(summary);
+  return ExitCode(summary.errors.empty() && summary.missing.empty());
 }
 
 }  // namespace

@@ -1,12 +1,10 @@
 // rigel_simulate: match files of the synthetic scene.
-#include <algorithm>
 #include <atomic>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <gflags/gflags.h>
@@ -16,6 +14,8 @@
 #include "rigel/problems/io/whole_file.h"
 #include "rigel/problems/scenes/driven_motion.h"
 #include "rigel/problems/scenes/synthetic.h"
+#include "rigel/tools/output_directory.h"
+#include "rigel/tools/progress.h"
 #include "rigel/tools/tool.h"
 
 DEFINE_string(
@@ -88,28 +88,17 @@ bool IsOwn(const std::string& name, int num_pairs) {
   return k >= 0 && k < num_pairs && name == FileName(k);
 }
 
-// Match files that are in `directory` and would be read with those of this run. In byte order.
-std::vector<std::string> OtherMatchFiles(const std::string& directory, int num_pairs,
-                                         std::error_code* code) {
-  namespace fs = std::filesystem;
-  std::vector<std::string> others;
-  fs::directory_iterator entry(directory, *code);
-  for (; !*code && entry != fs::directory_iterator(); entry.increment(*code)) {
-    const std::string name = entry->path().filename().string();
-    std::error_code ignored;
-    if (IsMatchFileName(name) && !IsOwn(name, num_pairs) && !entry->is_directory(ignored)) {
-      others.push_back(name);
-    }
+// The lesser of the two, whatever other threads do.
+void LowerTo(int k, std::atomic<int>* least) {
+  for (int now = *least; k < now && !least->compare_exchange_weak(now, k);) {
   }
-  std::sort(others.begin(), others.end());
-  return others;
 }
 
 // Makes and writes all files. The message of the first that failed, in their order; empty if none
 // did. After a failure no more are begun.
 std::string WriteFiles(const SceneOptions& options, const std::vector<DrivenMotion>& motions,
                        int num_pairs) {
-  Progress progress("rigel_simulate", num_pairs);
+  Progress progress(ProgramName(), num_pairs);
   std::vector<std::string> errors(num_pairs);
   std::atomic<int> failed{num_pairs};  // the first
   ParallelFor(num_pairs, FLAGS_threads, [&](int k) {
@@ -124,87 +113,75 @@ std::string WriteFiles(const SceneOptions& options, const std::vector<DrivenMoti
     } else if (!WriteMatchFile(path, pair, &error)) {
       errors[k] = error;
     }
-    if (!errors[k].empty()) {
-      for (int first = failed; k < first && !failed.compare_exchange_weak(first, k);) {
-      }
-    }
+    if (!errors[k].empty()) LowerTo(k, &failed);
     progress.Step();
   });
   return failed < num_pairs ? errors[failed] : "";
 }
 
-int Run() {
-  SceneOptions options;
-  std::string error;
-  if (FLAGS_output.empty()) return UsageError("--output is missing: name a directory");
-  if (FLAGS_pairs < 1) return UsageError("--pairs: expected at least 1");
-  if (!ParseMotionPattern(FLAGS_motion, &options.motion)) {
-    return UsageError("--motion=" + FLAGS_motion +
-                      ": expected forward, random, sideways or planar");
+bool SceneFromFlags(SceneOptions* options, std::string* error) {
+  if (!ParseMotionPattern(FLAGS_motion, &options->motion)) {
+    return WrongValue("motion", FLAGS_motion, "forward, random, sideways or planar", error);
   }
-  if (!ParseRotationAxisPattern(FLAGS_rotation_axis, &options.rotation_axis)) {
-    return UsageError("--rotation_axis=" + FLAGS_rotation_axis + ": expected y or random");
+  if (!ParseRotationAxisPattern(FLAGS_rotation_axis, &options->rotation_axis)) {
+    return WrongValue("rotation_axis", FLAGS_rotation_axis, "y or random", error);
   }
-  options.num_cameras = FLAGS_num_cameras;
-  options.ring = FLAGS_ring;
-  options.num_matches = FLAGS_num_matches;
-  options.noise_px = FLAGS_noise_px;
-  options.rotation_deg = FLAGS_rotation_deg;
-  options.inter_share = FLAGS_inter_share;
-  options.outlier_share = FLAGS_outlier_share;
-  options.moving_share = FLAGS_moving_share;
-  options.match_scores = FLAGS_match_scores;
-  options.seed = FLAGS_seed;
-  if (!options.IsValid(&error)) return UsageError("--" + error);
-  if (FLAGS_every < 1) return UsageError("--every: expected at least 1");
-  if (FLAGS_threads < 1 || FLAGS_threads > 1024) return UsageError("--threads: expected 1 to 1024");
-  const std::vector<std::string> given = GivenFlags();
-  const auto is_given = [&](const std::string& flag) {
-    return std::find(given.begin(), given.end(), flag) != given.end();
-  };
-  for (const char* flag : {"pairs", "motion", "rotation_deg", "rotation_axis"}) {
-    if (!FLAGS_poses.empty() && is_given(flag)) {
-      return UsageError("--" + std::string(flag) + ": the motions are those of --poses");
-    }
-  }
-  if (FLAGS_poses.empty() && is_given("every")) {
-    return UsageError("--every: there are no recorded motions without --poses");
-  }
+  options->num_cameras = FLAGS_num_cameras;
+  options->ring = FLAGS_ring;
+  options->num_matches = FLAGS_num_matches;
+  options->noise_px = FLAGS_noise_px;
+  options->rotation_deg = FLAGS_rotation_deg;
+  options->inter_share = FLAGS_inter_share;
+  options->outlier_share = FLAGS_outlier_share;
+  options->moving_share = FLAGS_moving_share;
+  options->match_scores = FLAGS_match_scores;
+  options->seed = FLAGS_seed;
+  if (options->IsValid(error)) return true;
+  *error = "--" + *error;
+  return false;
+}
 
-  std::vector<DrivenMotion> motions;
-  if (!FLAGS_poses.empty() && !ReadDrivenMotions(FLAGS_poses, FLAGS_every, &motions, &error)) {
-    std::cerr << error << "\n";
-    return kExitFailed;
+bool SettingsFromFlags(SceneOptions* options, std::string* error) {
+  if (FLAGS_output.empty()) return Refuse("--output is missing: name a directory", error);
+  if (FLAGS_pairs < 1) return Refuse("--pairs: expected at least 1", error);
+  if (!SceneFromFlags(options, error)) return false;
+  if (FLAGS_every < 1) return Refuse("--every: expected at least 1", error);
+  if (!CheckThreads(FLAGS_threads, 1, error)) return false;
+  const std::string flag = FirstGiven({"pairs", "motion", "rotation_deg", "rotation_axis"});
+  if (!FLAGS_poses.empty() && !flag.empty()) {
+    return Refuse("--" + flag + ": the motions are those of --poses", error);
   }
-  const int num_pairs = motions.empty() ? FLAGS_pairs : static_cast<int>(motions.size());
+  if (FLAGS_poses.empty() && IsGiven("every")) {
+    return Refuse("--every: there are no recorded motions without --poses", error);
+  }
+  return true;
+}
 
-  std::error_code code;
-  std::filesystem::create_directories(FLAGS_output, code);
-  if (code) {
-    std::cerr << PrintablePath(FLAGS_output) << ": cannot be made: " << code.message() << "\n";
-    return kExitFailed;
-  }
-  const std::vector<std::string> others = OtherMatchFiles(FLAGS_output, num_pairs, &code);
-  if (code) {
-    std::cerr << PrintablePath(FLAGS_output) << ": cannot be listed: " << code.message() << "\n";
-    return kExitFailed;
-  }
-  if (!others.empty()) {
-    std::cerr
-        << PrintablePath(FLAGS_output) << ": holds " << PrintablePath(others.front())
-        << (others.size() > 1 ? " and " + std::to_string(others.size() - 1) + " more" : "")
-        << ", which this run does not overwrite and which would be read as if it were of this run; "
-           "empty the directory or name another\n";
-    return kExitFailed;
+// False with a message if other match files are in the directory, or it cannot be made.
+bool PrepareOutput(int num_pairs, std::string* error) {
+  const auto is_own = [&](const std::string& name) { return IsOwn(name, num_pairs); };
+  if (!MakeDirectory(FLAGS_output, error) || !HoldsNoOtherMatchFiles(FLAGS_output, is_own, error)) {
+    return false;
   }
   RemoveLeftOvers(FLAGS_output, [](const std::string& name) {
     return std::filesystem::path(name).extension() == ".matches";
   });
-  error = WriteFiles(options, motions, num_pairs);
-  if (!error.empty()) {
-    std::cerr << error << "\n";
-    return kExitFailed;
+  return true;
+}
+
+int Run() {
+  SceneOptions options;
+  std::vector<DrivenMotion> motions;
+  std::string error;
+  if (!SettingsFromFlags(&options, &error)) return UsageError(error);
+  if (!FLAGS_poses.empty() && !ReadDrivenMotions(FLAGS_poses, FLAGS_every, &motions, &error)) {
+    return Failure(error);
   }
+  const int num_pairs = motions.empty() ? FLAGS_pairs : static_cast<int>(motions.size());
+  if (!PrepareOutput(num_pairs, &error)) return Failure(error);
+
+  error = WriteFiles(options, motions, num_pairs);
+  if (!error.empty()) return Failure(error);
   std::cerr << "wrote " << num_pairs << " match files to " << PrintablePath(FLAGS_output) << "\n";
   return kExitDone;
 }

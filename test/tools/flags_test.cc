@@ -242,7 +242,7 @@ TEST(Flags, PosesHaveTheirOwnMotionsAndFramesNeedPoses) {
   ExpectUsageError("simulate", {"--every=2"},
                    "--every: there are no recorded motions without --poses");
   ExpectUsageError("simulate", {"--every=0"}, "--every: expected at least 1");
-  ExpectUsageError("simulate", {"--threads=0"}, "--threads: expected 1 to 1024");
+  ExpectUsageError("simulate", {"--threads=0"}, "--threads=0: expected 1 to 1024");
 }
 
 TEST(Flags, UnwritableOutputFileFails) {

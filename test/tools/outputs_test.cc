@@ -7,6 +7,7 @@
 
 #include <filesystem>
 
+#include "rigel/problems/io/match_file.h"
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {
@@ -198,13 +199,17 @@ TEST_F(OutputsTest, AFlagFileNamesNoOther) {
   WriteText(itself, "--solver=4pt\n  -flagfile=" + itself + "\n");
   WriteText(Path("environment"), "--fromenv=flagfile\n");
   WriteText(Path("large"), std::string((1 << 20) + 1, '#'));
+  WriteText(Path("binary"), std::string("--solver=4pt\n\0", 14));
+  WriteText(Path("packed"), MatchFileBytes("x.gz", "--solver=4pt\n"));
   const std::pair<Args, std::string> wrong[] = {
       {{"--flagfile=" + itself}, itself + ": line 2: --flagfile is not taken from a flag file"},
       {{"-flagfile", itself}, itself + ": line 2"},
       {{"--flagfile=" + Path("good") + "," + itself}, itself + ": line 2"},
       {{"--flagfile=" + Path("environment")}, "line 1: --fromenv is not taken"},
       {{"--fromenv=solver,flagfile"}, "--fromenv=flagfile: a flag file is only taken"},
-      {{"--flagfile=" + Path("large")}, "larger than 1 MiB"},
+      {{"--flagfile=" + Path("large")}, "expected no more than 1048576 bytes"},
+      {{"--flagfile=" + Path("packed")}, Path("packed") + ": compressed, expected plain text"},
+      {{"--flagfile=" + Path("binary")}, Path("binary") + ": a NUL byte, expected UTF-8 text"},
       {{"--flagfile=/dev/zero"}, "/dev/zero: no regular file, expected one"},
       {{"--flagfile=" + Path("none")}, Path("none") + ": cannot be opened"},
   };
