@@ -130,8 +130,8 @@ void FinishInterruptedRun(const std::vector<std::string>& paths) {
     finished += done ? 1 : 0;
   }
   if (finished == 0) return;
-  std::cerr << "an interrupted run is finished: " << finished << " of " << paths.size()
-            << " files take their places\n";
+  std::cerr << "finished an interrupted run: replaced " << finished << " of " << paths.size()
+            << " files\n";
 }
 
 std::vector<std::string> Targets(const std::vector<std::string>& paths,
@@ -143,7 +143,7 @@ std::vector<std::string> Targets(const std::vector<std::string>& paths,
   for (const std::string& path : paths) {
     targets.push_back((fs::path(directory) / fs::path(path).filename()).string());
     if (!seen.insert(targets.back()).second) {
-      *error = PrintablePath(path) + ": another file has the same name, both would be " +
+      *error = PrintablePath(path) + ": another file has the same name; both would be written to " +
                PrintablePath(targets.back());
       return {};
     }

@@ -18,61 +18,78 @@
 
 DEFINE_string(
     matches, "",
-    "match files (*.matches, *.matches.gz) and directories of them, comma separated; - is stdin; a "
-    "comma in a path cannot be passed");
-DEFINE_string(use, "all",
-              "which matches are used: all, intra (same camera at both times) or inter");
+    "input, comma separated: match files (*.matches, *.matches.gz) and directories of them; - is "
+    "stdin. A path cannot contain a comma");
+DEFINE_string(
+    use, "all",
+    "which matches are used: all, intra (both points from the same camera) or inter (from "
+    "different cameras)");
 DEFINE_string(
     prior, "file",
-    "where the motion prior comes from: file, its lines; body, gravity, axis and normal are "
-    "the body's down, see --down (no sensor at all); truth, exact, from the truth line");
+    "source of the motion prior: file (the lines of the match file), body (no sensor: gravity, "
+    "axis and normal all point along --down) or truth (exact, from the truth line)");
 DEFINE_string(
     down, "",
-    "which way is down in the body frame: +x, -x, +y, -y, +z, -z or three numbers x,y,z; if empty "
-    "the body axis nearest to the mean of the cameras' down directions, which is told");
+    "down direction of the body frame: +x, -x, +y, -y, +z, -z or three numbers x,y,z. If empty: "
+    "the body axis nearest to the mean down direction of the cameras, printed to stderr");
 DEFINE_string(
     forward, "",
-    "which way the vehicle's front is in the body frame, for 2pt-ackermann and the error of "
-    "--prior_noise_axis=roll: as --down; if empty the files' 'forward' line, else as the cameras "
-    "look if they agree, else +x where -z is down, +z where +y is down");
-DEFINE_double(prior_noise_deg, 0,
-              "error of exactly that angle on the prior, its sign random per pair");
-DEFINE_string(prior_noise_axis, "pitch",
-              "the error turns about: pitch (the body's right), roll (its forward) or random");
-DEFINE_double(prior_sigma_deg, 0,
-              "the prior's stated 1-sigma for --use_prior_in_refine; 0: as in the file");
-DEFINE_bool(use_prior_in_refine, false, "weigh the prior by its sigma in the refinement");
+    "forward direction of the body frame, written as --down. Used by the solver 2pt-ackermann "
+    "and by --prior_noise_axis=roll. If empty: the file's 'forward' line; without one, the body "
+    "axis along which the cameras look; if they look in different directions, +x for a down of "
+    "-z and +z for a down of +y");
+DEFINE_double(
+    prior_noise_deg, 0,
+    "error added to the prior, degrees: a rotation by exactly this angle, its sign random per "
+    "pair");
+DEFINE_string(
+    prior_noise_axis, "pitch",
+    "axis of the error of --prior_noise_deg: pitch (the body's right), roll (the body's forward) "
+    "or random");
+DEFINE_double(
+    prior_sigma_deg, 0,
+    "standard deviation of the prior, degrees, for --use_prior_in_refine. 0: as stated in the "
+    "file");
+DEFINE_bool(use_prior_in_refine, false,
+            "add the prior to the refinement, weighted by its standard deviation");
 DEFINE_string(
     refine, "full",
-    "what the refinement frees: none (no refinement; what is observable is then not known), full "
-    "(rotation and translation), prior "
-    "(the prior is exact), depths (a reference match is exact), prior-depths (both), bundle (full "
-    "and the points: reprojection errors)");
+    "parameters of the refinement: none (no refinement: what is observable is then not known), "
+    "full (rotation and translation), prior (motions that satisfy the prior exactly), depths "
+    "(motions that satisfy one reference match exactly), prior-depths (both) or bundle (motion "
+    "and 3D points, with reprojection errors)");
 DEFINE_bool(fix_translation_norm, false,
-            "hold |t| at the file's distance, with --prior=truth at the true one");
+            "hold |t| at the distance that the file states; with --prior=truth at the true |t|");
 DEFINE_bool(estimate_noise, false,
-            "estimate the image noise from the residuals even where the file states it");
-DEFINE_string(residual, "sampson",
-              "sampson (pixels), angular, or algebraic (for comparison: not robust, and with "
-              "intra-camera matches and a free scale it collapses to zero motion)");
+            "estimate the image noise from the residuals, even if the file states it");
+DEFINE_string(
+    residual, "sampson",
+    "residual of the refinement: sampson (pixels), angular (radians) or algebraic (metres). "
+    "algebraic is for comparison only: it is not robust, and it tends to zero motion if all "
+    "matches are intra-camera and the scale is free");
 DEFINE_string(loss, "cauchy",
-              "robust loss of the refinement: none, huber, cauchy, tukey, truncated");
-DEFINE_string(threshold_px, "auto",
-              "inlier threshold on the Sampson error; 3 sigma of the noise is best. auto: 1.5, or "
-              "1/300 of the shortest focal length where that is less");
-DEFINE_double(confidence, 0.9999,
-              "RANSAC stops when a sample of inliers was drawn with this probability");
-DEFINE_int32(max_iterations, 10000, "largest number of RANSAC iterations");
-DEFINE_double(time_limit_ms, 0,
-              "a pair's estimate ends after so long with the best motion found by then; its status "
-              "says so (0: no limit)");
-DEFINE_uint64(seed, 1, "seed of all random numbers; the same seed gives the same result");
-DEFINE_int32(threads, 1, "frame pairs estimated at the same time; the results do not depend on it");
-DEFINE_string(shard, "",
-              "i/n: only the i-th of n equal parts of the files, i from 0; each pair's result is "
-              "that of the whole");
+              "robust loss of the refinement: none, huber, cauchy, tukey or truncated");
+DEFINE_string(
+    threshold_px, "auto",
+    "RANSAC inlier threshold on the Sampson error, pixels. Three standard deviations of the "
+    "image noise work best. auto: 1.5, or 1/300 of the shortest focal length if that is less");
+DEFINE_double(
+    confidence, 0.9999,
+    "RANSAC stops when, with this probability, it has drawn a sample without outliers; between 0 "
+    "and 1");
+DEFINE_int32(max_iterations, 10000, "maximum number of RANSAC iterations");
+DEFINE_double(
+    time_limit_ms, 0,
+    "time limit for each pair, milliseconds; 0: none. At the limit a pair gets the best motion "
+    "so far, and its status says so");
+DEFINE_uint64(seed, 1, "seed of the random numbers. The same seed gives the same results");
+DEFINE_int32(threads, 1, "number of threads, 1 to 1024. Results do not depend on it");
+DEFINE_string(
+    shard, "",
+    "i/n: process only part i of n equal parts of the files, i from 0 to n - 1. Each pair gets "
+    "the same result as in a run over all files");
 DEFINE_bool(no_times, false,
-            "leave the times out of the results, which are then the same in every run");
+            "leave run times out of the results, which are then equal in every run");
 
 namespace rigel {
 namespace {
@@ -102,7 +119,7 @@ bool CheckMatches(std::string* error) {
   }
   const std::vector<std::string> items = SplitCommas(FLAGS_matches);
   if (std::count(items.begin(), items.end(), "-") > 1) {
-    return WrongValue("matches", FLAGS_matches, "'-' once: stdin can be read but once", error);
+    return WrongValue("matches", FLAGS_matches, "'-' once: stdin can be read only once", error);
   }
   return true;
 }
@@ -155,7 +172,7 @@ bool CheckRefinement(const EstimateOptions& estimate, std::string* error) {
        FLAGS_loss != "cauchy" || FLAGS_residual != "sampson")) {
     return Refuse(
         "--loss, --residual, --fix_translation_norm, --use_prior_in_refine and --estimate_noise "
-        "are of the refinement, which --refine=none leaves out",
+        "have no effect without a refinement (--refine=none)",
         error);
   }
   if (estimate.refine.residual == ResidualKind::kAlgebraic && FLAGS_loss != "cauchy") {

@@ -47,9 +47,9 @@ void ReportDoubts(const std::string& solver, const std::vector<DoubtedMotion>& m
             << (motions.size() == 1 ? " motion, " : " motions, ")
             << (count == 1 ? "" : "the first ") << PrintablePath(first->pair) << ": "
             << first->doubt << "; "
-            << (prior ? "is the prior right (--solver=auto does without it where it is not), or "
-                        "are many of the matches outliers?"
-                      : "are most of the matches outliers?")
+            << (prior
+                    ? "check the prior (--solver=auto drops a wrong one) and the share of outliers"
+                    : "check the share of outliers")
             << "\n";
 }
 
@@ -66,7 +66,7 @@ void ReportUnweighedPriors(const ComparisonOptions& options,
     if (info != nullptr && info->prior != PriorKind::kNone) kinds.push_back(info->prior);
   }
   if (kinds.empty()) {
-    std::cerr << "--use_prior_in_refine: no prior is weighed, the solver uses none\n";
+    std::cerr << "--use_prior_in_refine: has no effect, the solver uses no prior\n";
     return;
   }
   // A pair without the prior itself fails, with a message of its own.
@@ -77,13 +77,13 @@ void ReportUnweighedPriors(const ComparisonOptions& options,
   };
   const auto count = std::count_if(pairs.begin(), pairs.end(), unweighed);
   if (count == 0) return;
-  std::cerr << "--use_prior_in_refine: no sigma of the prior is stated in " << count << " of "
-            << pairs.size() << " pairs, it is not weighed there; state --prior_sigma_deg\n";
+  std::cerr << "--use_prior_in_refine: the prior has no standard deviation in " << count << " of "
+            << pairs.size() << " pairs and is not used there; set --prior_sigma_deg\n";
 }
 
 void ReportSuggestedAxes(const ComparisonOptions& options, const std::vector<std::string>& solvers,
                          const std::vector<AppliedAxes>& applied) {
-  // More than a camera is tilted on a vehicle.
+  // Degrees: more than a camera is tilted on a vehicle.
   constexpr double kFarOffDeg = 25.0;
   const bool uses_forward =
       std::count(solvers.begin(), solvers.end(), "2pt-ackermann") > 0 ||
@@ -112,7 +112,7 @@ void ReportSuggestedAxes(const ComparisonOptions& options, const std::vector<std
                             : ": taken from the cameras of the rig";
   if (off_deg > kFarOffDeg) {
     line += ", whose mean down is " + std::to_string(static_cast<int>(std::lround(off_deg))) +
-            " degrees off it; state it if it is another";
+            " degrees from it; set --down if this is wrong";
   }
   std::cerr << line << "\n";
 }

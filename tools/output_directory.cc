@@ -38,7 +38,7 @@ bool HoldsNoOtherMatchFiles(const std::string& directory,
   return Refuse(
       PrintablePath(directory) + ": holds " + PrintablePath(*others.begin()) +
           (others.size() > 1 ? " and " + std::to_string(others.size() - 1) + " more" : "") +
-          ", which this run does not overwrite and which would be read as if it were of this run; "
+          ", not written by this run, which would later be read with its files; "
           "empty the directory or name another",
       error);
 }

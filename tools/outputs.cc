@@ -60,13 +60,13 @@ bool OutputsDiffer(const std::vector<OutputFlag>& outputs, std::string* error) {
     for (size_t i = 0; i < k; ++i) {
       const auto& [first_flag, first_file] = outputs[i];
       if (IsStdout(file) && IsStdout(first_file)) {
-        return Refuse(value + ": stdout has that of --" + first_flag +
-                          " already; name a file for one of them",
-                      error);
+        return Refuse(
+            value + ": --" + first_flag + " goes to stdout already; name a file for one of them",
+            error);
       }
       if (SameOutputFile(first_file, file)) {
-        return Refuse(value + ": that of --" + first_flag +
-                          " goes to this file already; name another for one of them",
+        return Refuse(value + ": --" + first_flag +
+                          " writes to this file already; name another for one of them",
                       error);
       }
     }
@@ -98,9 +98,9 @@ bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
     if ((input == "-" ? fstat(STDIN_FILENO, &status) : stat(input.c_str(), &status)) != 0) continue;
     for (const auto& [output, of_output] : files) {
       if (status.st_dev != of_output.st_dev || status.st_ino != of_output.st_ino) continue;
-      return Refuse(output + ": is the input " + PrintablePath(input == "-" ? "stdin" : input) +
-                        ", which it would destroy",
-                    error);
+      return Refuse(
+          output + ": would overwrite the input " + PrintablePath(input == "-" ? "stdin" : input),
+          error);
     }
   }
   return true;

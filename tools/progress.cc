@@ -23,6 +23,7 @@ void Progress::Step() {
 
 void Progress::Note(const std::function<std::string()>& text) {
   if (!terminal_) return;
+  // Milliseconds: often enough to see it move, and no work for the terminal.
   constexpr std::chrono::milliseconds kPause(300);
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto now = std::chrono::steady_clock::now();

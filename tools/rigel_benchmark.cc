@@ -21,58 +21,63 @@
 #include "rigel/tools/solver_names.h"
 #include "rigel/tools/tool.h"
 
-DEFINE_string(solvers, "", "names of solvers, comma separated; all if empty");
-DEFINE_int32(num_cameras, 2, "cameras of the rig, 1 to 4");
-DEFINE_int32(trials, 10000, "random problems a solver and kind of sample");
-DEFINE_double(rotation_deg, 1, "rotation angle of the problems; 0 is pure translation");
+DEFINE_string(solvers, "", "minimal solvers, comma separated; all if empty");
+DEFINE_int32(num_cameras, 2, "number of cameras of the rig, 1 to 4");
+DEFINE_int32(trials, 10000, "number of random problems per solver and kind of sample");
+DEFINE_double(rotation_deg, 1, "rotation angle of the problems, degrees; 0 is pure translation");
 DEFINE_bool(random_axis, false,
-            "turn about a random axis instead of the body's Y (not for planar motion)");
-DEFINE_bool(refine, false,
-            "time the refinement instead of the solvers: 600 inliers, from a hypothesis 1 deg off");
+            "rotate about a random axis instead of the body's Y axis (except for planar motion)");
+DEFINE_bool(
+    refine, false,
+    "measure the refinement instead of the solvers: 600 inliers, start 1 degree from the truth, "
+    "at most 200 problems");
 DEFINE_string(
     ransac, "",
-    "measure RANSAC and refinement instead: speed, outliers, ablation, moving or hostile");
-DEFINE_int32(pairs, 200, "frame pairs of each scene of --ransac");
-DEFINE_string(matches, "",
-              "match files and directories, comma separated, instead of the scene of "
-              "--ransac=speed");
-DEFINE_string(prior, "file", "prior of --matches: file, body or truth, as in rigel_compare");
-DEFINE_uint64(seed, 1, "the same seed makes the same problems");
+    "measure RANSAC and refinement instead of the solvers: speed, outliers, ablation, moving or "
+    "hostile (see above)");
+DEFINE_int32(pairs, 200, "number of frame pairs per scene of --ransac");
+DEFINE_string(
+    matches, "",
+    "match files and directories, comma separated: measure --ransac=speed on these instead of a "
+    "synthetic scene");
+DEFINE_string(prior, "file",
+              "source of the motion prior for --matches: file, body or truth, as in rigel_compare");
+DEFINE_uint64(seed, 1, "seed of the random numbers. The same seed gives the same problems");
 DEFINE_string(json, "", "write the results as JSON (docs/formats.md) to this file; - is stdout");
 
 namespace rigel {
 namespace {
 
 constexpr char kUsage[] =
-    "rigel_benchmark: how fast the minimal solvers are and how often they find the truth.\n"
+    "rigel_benchmark: speed and reliability of minimal solvers, RANSAC and refinement.\n"
     "\n"
     "  rigel_benchmark --solvers=4pt,4pt-approx --trials=10000\n"
     "\n"
-    "Noise-free random problems of the scene (see rigel_simulate), one row for samples within the\n"
-    "cameras (intra) and one between them (inter). Timed is one call, from prepared matches to the "
-    "list\n"
-    "of (R, t), in batches of at least 50 us. The ratio is to a 4x4 LU solve by Eigen in the same "
-    "run.\n"
-    "found truth: share of problems with a solution whose rotation is within 1e-6 rad of it; with\n"
-    "--rotation_deg=0 its translation direction must be within 1e-4 rad, too. best root: the "
-    "median\n"
-    "error of the solution nearest to the truth, which for a first-order solver is its bias.\n"
+    "Solves random problems without noise, in the scene of rigel_simulate. A row is one solver\n"
+    "with samples within each camera (intra) or between cameras (inter). Times are of one call,\n"
+    "from prepared matches to the list of (R, t), measured in batches of at least 50 us; the\n"
+    "ratio is to a 4x4 LU solve by Eigen in the same run.\n"
+    "  found truth  share of problems with a solution whose rotation is within 1e-6 rad of the\n"
+    "               truth; with --rotation_deg=0 also its direction of translation, to 1e-4 rad\n"
+    "  best root    median error of the solution nearest to the truth: for a first-order solver,\n"
+    "               its bias\n"
     "\n"
-    "  rigel_benchmark --ransac=speed|outliers|ablation|moving|hostile\n"
+    "  rigel_benchmark --ransac=speed\n"
     "\n"
-    "RANSAC and refinement on one thread, in scenes of random motion (planar for planar solvers),\n"
-    "1 degree, 0.5 px, exact priors. speed: 626 matches, 30 percent outliers. outliers: 300 "
-    "inliers\n"
-    "and 10 to 80 percent outliers. ablation: parts of the estimator left out or added. moving: a\n"
-    "car that moves by itself. Times are the least of three runs of a pair; clean: to the error\n"
-    "from the inliers alone; bound: RMS error of the pairs that succeed to the RMS Cramer-Rao "
-    "bound\n"
-    "of their inliers; success: rotation within three bounds; missed: failed pairs that succeed "
-    "if\n"
-    "refined from the truth; static: the motion holds nine in ten of the static matches that the\n"
-    "true one does. hostile: no match follows any motion; how long a pair takes at most, in time "
-    "of\n"
-    "the processor.\n";
+    "Measures RANSAC and refinement on one thread, in scenes of random motion (planar for planar\n"
+    "solvers) with 1 degree of rotation, 0.5 px of noise and exact priors:\n"
+    "  speed        626 matches, 30 percent outliers\n"
+    "  outliers     300 inliers and 10 to 80 percent outliers\n"
+    "  ablation     parts of the estimator left out or added\n"
+    "  moving       some matches are on a car that moves by itself\n"
+    "  hostile      no match follows any motion: the maximum processor time of a pair\n"
+    "Times are the minimum of three runs of a pair. Columns:\n"
+    "  clean        error relative to that of an estimate from the inliers alone\n"
+    "  bound        RMS error of the successful pairs relative to the RMS Cramer-Rao bound\n"
+    "  success      share of pairs with a rotation within three bounds of the truth\n"
+    "  missed       failed pairs that succeed if the refinement starts at the truth\n"
+    "  static       share of pairs whose motion has at least 90 percent of the static inliers\n"
+    "               of the true motion\n";
 
 std::vector<OutputFlag> Outputs() { return {{"json", FLAGS_json}}; }
 
@@ -202,8 +207,9 @@ bool SolverOptionsFromFlags(SolverBenchmarkOptions* options, std::string* error)
   options->rotation_deg = FLAGS_rotation_deg;
   options->random_axis = FLAGS_random_axis;
   options->seed = FLAGS_seed;
-  if (FLAGS_num_cameras < 1 || FLAGS_num_cameras > 4) {
-    return Refuse("--num_cameras: expected 1 to 4", error);
+  constexpr int kMaxCameras = 4;  // cameras: more have no place in the scene without a ring
+  if (FLAGS_num_cameras < 1 || FLAGS_num_cameras > kMaxCameras) {
+    return Refuse("--num_cameras: expected 1 to " + std::to_string(kMaxCameras), error);
   }
   if (FLAGS_trials < 1) return Refuse("--trials: expected at least 1", error);
   if (!std::isfinite(FLAGS_rotation_deg)) return Refuse("--rotation_deg: expected a number", error);

@@ -17,38 +17,41 @@
 #include "rigel/tools/outputs.h"
 #include "rigel/tools/tool.h"
 
-DEFINE_string(solver, "5pt+1", "name of the minimal solver, or auto; 5pt+1 needs no prior");
-DEFINE_string(lines, "normal",
-              "what is calibrated, comma separated: normal (of the motion plane), axis (the same "
-              "direction as rotation axis), gravity (the rotation from the frame of the stated "
-              "gravity to the body)");
-DEFINE_string(output, "",
-              "write copies of the match files with the calibrated lines to this directory, made "
-              "if missing; one with match files other than those of an earlier run is refused");
-DEFINE_bool(in_place, false, "write the calibrated lines into the match files themselves");
-DEFINE_string(json, "",
-              "write the calibration (format rigel-prior-calibration 1) to this file; - is stdout");
+DEFINE_string(solver, "5pt+1", "minimal solver of RANSAC, or auto; 5pt+1 needs no prior");
+DEFINE_string(
+    lines, "normal",
+    "lines to calibrate, comma separated: normal (of the motion plane), axis (of rotation, along "
+    "the same direction) and gravity (by the rotation from the frame of the IMU to the body)");
+DEFINE_string(
+    output, "",
+    "write copies of the match files with calibrated lines to this directory, which is created "
+    "if missing. It must not hold match files other than those of an earlier run");
+DEFINE_bool(in_place, false, "write the calibrated lines to the match files themselves");
+DEFINE_string(
+    json, "",
+    "write the calibration as JSON (format rigel-prior-calibration 1, docs/formats.md) to this "
+    "file; - is stdout");
 
 namespace rigel {
 namespace {
 
 constexpr char kUsage[] =
-    "rigel_calibrate_prior: the motion plane and the mounting of an IMU from a clip's motions.\n"
+    "rigel_calibrate_prior: calibrates the motion plane and the mounting of an IMU of a vehicle.\n"
     "\n"
     "  rigel_calibrate_prior --matches=DIR --lines=normal,axis --output=CALIBRATED\n"
     "  rigel_compare --matches=CALIBRATED --solvers=3pt --prior=file\n"
     "\n"
-    "Estimates the motion of each match file of one vehicle and from them all the normal of the\n"
-    "plane that it moves in, starting from the files' normal or the body's down, and the rotation\n"
-    "that turns the stated gravity into the body frame. What the motions do not determine is said\n"
-    "and left as it was: a drive straight ahead says nothing of the plane's roll, and without\n"
-    "turns nothing of the IMU's mounting. Files are replaced whole, all new ones written before "
-    "the\n"
-    "first takes its place, their other lines and comments untouched; what a killed run had not "
-    "put\n"
-    "in its place is finished by the next. A comment line tells the calibrated ones; input of "
-    "which\n"
-    "only a part is calibrated is refused.\n";
+    "All match files must be of one vehicle. From their estimated motions it determines the\n"
+    "normal of the plane in which the vehicle moves, starting at the files' normal or at the\n"
+    "body's down, and the rotation from the frame of the stated gravity to the body frame. A\n"
+    "part that the motions do not determine is reported and left unchanged: driving straight\n"
+    "does not determine the roll of the plane, and without turns the mounting of the IMU is not\n"
+    "determined.\n"
+    "\n"
+    "With --output or --in_place the calibrated lines are written; all other lines stay the\n"
+    "same, and a comment marks a calibrated file. All new files are written before the first one\n"
+    "replaces an old one. If a run is killed while they do, the next run with --in_place\n"
+    "finishes it. Input of which only some files are calibrated is an error.\n";
 
 struct Settings {
   ComparisonOptions options;
@@ -67,20 +70,18 @@ bool SettingsFromFlags(Settings* settings, std::string* error) {
   }
   if (!SolverFromFlag(FLAGS_solver, &options.estimate, error)) return false;
   if (!options.estimate.refine_motion) {
-    return Refuse("--refine=none: a calibration is of refined motions", error);
+    return Refuse("--refine=none: a calibration needs refined motions", error);
   }
   if (settings->lines.gravity && options.prior.source != PriorSource::kFile) {
-    return Refuse("--lines=gravity: the stated directions are those of the files: --prior=file",
-                  error);
+    return Refuse("--lines=gravity: needs --prior=file, the gravity that the files state", error);
   }
   if (FLAGS_in_place && !FLAGS_output.empty()) {
-    return Refuse("--in_place: --output names another place", error);
+    return Refuse("--in_place and --output: expected one of them", error);
   }
-  if (IsGiven("shard")) return Refuse("--shard: a calibration is of all files", error);
+  if (IsGiven("shard")) return Refuse("--shard: a calibration needs all files", error);
   if (WritesFiles() && ReadsStdin()) {
     return Refuse(
-        "--matches: stdin has no file whose lines could be written; without --in_place and "
-        "--output it is read",
+        "--matches=-: stdin cannot be written to; leave out --in_place and --output to read it",
         error);
   }
   return OutputsDiffer(Outputs(), error);
@@ -145,7 +146,7 @@ bool Gather(std::vector<BatchItem<Estimated>> items, Clip* clip, std::string* er
     if (!item.result.failure.empty()) clip->failures.push_back(item.result.failure);
     if (clip->pairs.empty()) clip->rig = item.result.rig;
     if (!SameCameras(clip->rig, item.result.rig)) {
-      return Refuse("a calibration is of one vehicle: cameras differ between " +
+      return Refuse("the files are not of one vehicle: cameras differ between " +
                         PrintablePath(clip->pairs.front().name) + " and " +
                         PrintablePath(item.pair.name),
                     error);
@@ -204,7 +205,7 @@ int WriteLines(const CalibrationReport& report, const CalibratedLines& lines,
   }
   const bool any = (report.plane && report.plane->level != CalibrationLevel::kNone) ||
                    (report.gravity && report.gravity->level != CalibrationLevel::kNone);
-  if (!any) return Failure("nothing is written: nothing that was asked for is determined");
+  if (!any) return Failure("nothing is written: the motions determine none of --lines");
   return ExitCode(WriteCalibratedFiles(report, lines, pairs, FLAGS_output));
 }
 

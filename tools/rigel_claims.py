@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Holds claims, the paper's and Rigel's own, against what rigel_experiment left in a directory.
+"""Checks claims, of the paper and of Rigel, against the results of rigel_experiment.
 
   rigel_claims.py DIR
 
-reads NAME.json of each experiment in DIR, prints a verdict on each claim, and writes claims.md and
-claims.json in DIR. The claims are data: rigel_claims.json, beside this script (docs/formats.md).
-rigel_experiment runs it after each run. Python's standard library only.
+Reads NAME.json of each experiment in DIR, prints a verdict on each claim, and writes claims.md and
+claims.json to DIR. The claims are data: rigel_claims.json, beside this script (docs/formats.md).
+rigel_experiment runs this script after each run. It needs only Python's standard library.
 
 Exit code: 0 done, 1 failed, 2 wrong flag.
 """
@@ -123,7 +123,7 @@ def run(directory):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, allow_abbrev=False,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("directory", metavar="DIR", help="--output of rigel_experiment")
+    parser.add_argument("directory", metavar="DIR", help="directory of results, --output of rigel_experiment")
     try:
         run(parser.parse_args().directory)
     except Bad as error:

@@ -26,55 +26,60 @@
 
 DEFINE_string(
     solvers, "",
-    "names of solvers, comma separated, auto among them (see rigel_estimate); all that the "
-    "priors allow if empty");
+    "minimal solvers, comma separated; auto is allowed, as in rigel_estimate. If empty: all "
+    "whose prior every file has");
 DEFINE_string(
     by, "",
-    "sequence: the tables of the paper, too: time in RANSAC, median rotation and "
-    "translation direction error, one row a sequence, one column a solver; entries of each "
-    "sequence in --json");
-DEFINE_string(json, "", "write the report (format rigel-report 1) to this file; - is stdout");
-DEFINE_string(csv, "", "write one line a pair and solver to this file; - is stdout");
+    "sequence: also print tables per sequence, as in the paper: RANSAC time, median rotation "
+    "error and median direction error; one row per sequence, one column per solver. --json then "
+    "has entries per sequence");
+DEFINE_string(
+    json, "",
+    "write the report as JSON (format rigel-report 1, docs/formats.md) to this file; - is stdout");
+DEFINE_string(csv, "", "write one line per pair and solver to this file; - is stdout");
 DEFINE_bool(per_pair, false,
-            "write the results of each pair to --json, too; with --shard they always are");
-DEFINE_string(merge, "",
-              "reports that --shard and --json wrote, comma separated: write that of the whole "
-              "instead of reading match files");
+            "write the results of each pair to --json, too. Always on with --shard");
+DEFINE_string(
+    merge, "",
+    "reports of --shard runs, comma separated: combine them to one report instead of reading "
+    "match files");
 DEFINE_string(
     fail_above, "",
-    "bounds on statistics over all pairs, comma separated: STATISTIC:LIMIT for each solver or "
-    "SOLVER/STATISTIC:LIMIT, as refined.rotation_deg.median:0.03 with the names of the report "
-    "of --json; one that is above its bound or missing is told and the exit code is 3");
-DEFINE_int32(max_failures, -1, "the same for the number of pairs without a motion; -1: no bound");
+    "bounds, comma separated: STATISTIC:LIMIT for all solvers or SOLVER/STATISTIC:LIMIT for one, "
+    "for example refined.rotation_deg.median:0.03. Statistics have the names of --json and cover "
+    "all pairs. If one is above its limit or missing, the exit code is 3");
+DEFINE_int32(
+    max_failures, -1,
+    "bound on the number of pairs without a motion, per solver; above it the exit code is 3. -1: "
+    "no bound");
 DEFINE_string(
     baseline, "",
-    "an earlier report of --json: the same for each of its refined errors, its failures and its "
-    "pairs with a direction, solver by solver and sequence by sequence");
-DEFINE_double(tolerance, 0.05, "by what fraction those of --baseline may be exceeded");
+    "report of an earlier run (--json): the exit code is 3 if a refined error, the number of "
+    "failures or of pairs without a direction is worse than there, for any solver and sequence");
+DEFINE_double(tolerance, 0.05,
+              "fraction by which results may be worse than those of --baseline; 0.05 is 5 percent");
 
 namespace rigel {
 namespace {
 
 constexpr char kUsage[] =
-    "rigel_compare: how accurate the raw motion of RANSAC and the refined one are.\n"
+    "rigel_compare: measures the accuracy of solvers on match files with known motion.\n"
     "\n"
     "  rigel_compare --matches=DIR --solvers=4pt-axis,3pt --prior=body\n"
     "\n"
-    "Reads match files with a truth line, estimates each pair with each solver and prints the "
-    "median\n"
-    "errors: rotation, direction of translation and scale, where these are observable; beside "
-    "them,\n"
-    "where the files state the image noise, the Cramer-Rao bound that no estimate can beat. With\n"
-    "--refine=none nothing says what is observable: the direction is shown of every pair, the "
-    "scale\n"
-    "of pairs with matches between cameras.\n"
+    "Estimates each pair with each solver and prints the median errors of the motions, from\n"
+    "RANSAC (raw) and refined: rotation, direction of translation and scale, where these are\n"
+    "observable. Files need a truth line. If they state the image noise, the table also shows\n"
+    "the Cramer-Rao bound, which no unbiased estimate can beat. With --refine=none it is not\n"
+    "known what is observable: errors of direction are then of all pairs, errors of scale of the\n"
+    "pairs with matches between different cameras.\n"
     "\n"
-    "Many files, on several machines and put together again (docs/batch.md):\n"
+    "Parallel runs over many files (docs/batch.md):\n"
     "\n"
     "  rigel_compare --matches=DIR --shard=0/2 --json=0.json      (and 1/2 to 1.json)\n"
     "  rigel_compare --merge=0.json,1.json --json=whole.json\n"
     "\n"
-    "As a test, which fails with exit code 3 (docs/regression.md):\n"
+    "Regression test, exit code 3 if results are worse than before (docs/regression.md):\n"
     "\n"
     "  rigel_compare --matches=DIR --baseline=report.json --max_failures=0\n";
 

@@ -20,44 +20,47 @@
 
 DEFINE_string(
     solver, "auto",
-    "name of the minimal solver of RANSAC, or auto: the most constrained one that the priors "
-    "allow, others after it while the result is doubtful");
-DEFINE_string(json, "", "write the motions (format rigel-estimate 1) to this file; - is stdout");
-DEFINE_string(csv, "", "write one line a pair to this file; - is stdout");
+    "minimal solver of RANSAC (docs/solvers.md), or auto: tries the solvers that the prior "
+    "allows, the most constrained one first, until the motion is not doubtful");
+DEFINE_string(
+    json, "",
+    "write the motions as JSON (format rigel-estimate 1, docs/formats.md) to this file; - is "
+    "stdout");
+DEFINE_string(csv, "", "write the motions as CSV, one line per pair, to this file; - is stdout");
 DEFINE_string(
     g2o, "",
-    "write a pose graph of g2o, files in order one after the other along a drive, to this "
-    "file; - is stdout");
+    "write a g2o pose graph to this file; - is stdout. The files, in order, are consecutive "
+    "pairs of one drive. Needs a refinement");
 DEFINE_string(
     kitti_trajectory, "",
-    "chain the motions, files in order along a drive, and write the poses as KITTI does (12 "
-    "numbers a line, body frame) to this file; several trajectories to FILE_0.EXT, FILE_1.EXT, "
-    "...; - is stdout");
-DEFINE_string(tum_trajectory, "", "the same as TUM's tools have it: TIME X Y Z QX QY QZ QW a line");
-DEFINE_bool(truth_trajectory, false,
-            "write the truth's trajectory as well, beside each: FILE_truth.EXT");
+    "chain the motions of consecutive pairs and write the poses of the body in KITTI format (12 "
+    "numbers per line, metres) to this file; - is stdout. Several trajectories go to FILE_0.EXT, "
+    "FILE_1.EXT, ...");
+DEFINE_string(
+    tum_trajectory, "",
+    "the same in TUM format, as evo reads it: TIME X Y Z QX QY QZ QW per line; seconds and "
+    "metres");
+DEFINE_bool(truth_trajectory, false, "also write the true trajectory, to FILE_truth.EXT");
 DEFINE_bool(drift, false,
-            "chain the motions and print how far they drift from the truth: KITTI's metric, "
-            "errors of single steps and of the end; as of the trajectory flags where there is a "
-            "truth");
+            "chain the motions and print the drift: the errors of the KITTI odometry benchmark, of "
+            "single steps and of the final pose. Needs truth lines");
 
 namespace rigel {
 namespace {
 
 constexpr char kUsage[] =
-    "rigel_estimate: the motion (R, t), X_2 = R X_1 + t, of each match file.\n"
+    "rigel_estimate: estimates the relative pose (R, t), X_2 = R X_1 + t, of each match file.\n"
     "\n"
     "  rigel_estimate --matches=DIR --prior=body --json=motions.json\n"
     "\n"
-    "RANSAC with a minimal solver makes hypotheses, a refinement makes them accurate. The table\n"
-    "gives the rotation angle, the direction of translation and |t| with their standard "
-    "deviations,\n"
-    "and \"-\" for what the matches do not determine. With --refine=none nothing says what they\n"
-    "determine: the direction is shown as it is, |t| only where there are matches between "
-    "cameras.\n"
-    "The JSON and CSV give the motions in full, raw and refined; --g2o chains the refined ones,\n"
-    "with their information, to a pose graph, --kitti_trajectory and --tum_trajectory to "
-    "trajectories.\n";
+    "RANSAC with a minimal solver finds a motion and its inliers; a nonlinear refinement then\n"
+    "minimizes their error. The table shows the rotation angle, the direction of translation and\n"
+    "|t|, each with its standard deviation, and \"-\" for what the matches do not determine. With\n"
+    "--refine=none this is not known: the table then shows every direction, and |t| only if\n"
+    "there are matches between different cameras.\n"
+    "\n"
+    "The JSON and CSV files hold the complete motions, from RANSAC (raw) and refined. The other\n"
+    "outputs chain the refined motions of a drive to a pose graph or a trajectory.\n";
 
 // Flags of outputs, with their files.
 std::vector<OutputFlag> Outputs() {

@@ -22,23 +22,26 @@
 #include "rigel/tools/python_script.h"
 #include "rigel/tools/tool.h"
 
-DEFINE_string(name, "", "names of experiments, comma separated, or all; --list shows them");
-DEFINE_bool(list, false, "print the experiments, one a line, and end");
-DEFINE_string(output, "", "directory that gets the results; made if missing");
-DEFINE_bool(quick, false, "few pairs and a coarse grid: minutes instead of hours");
-DEFINE_int32(pairs, 0, "frame pairs of each point; 0: 500, with --quick 30");
+DEFINE_string(name, "", "names of experiments, comma separated, or all; see --list");
+DEFINE_bool(list, false, "print the names of the experiments and exit");
+DEFINE_string(output, "", "directory for the results; created if missing");
+DEFINE_bool(quick, false, "fewer pairs and a coarser grid: minutes instead of hours");
+DEFINE_int32(pairs, 0, "number of frame pairs per point. 0: 500, with --quick 30");
 DEFINE_string(poses, "",
-              "directory of KITTI odometry poses (00.txt, ...), which kitti-motions needs");
-DEFINE_string(kitti_root, "", "directory of the KITTI odometry data: its poses are --poses");
-DEFINE_int32(every, 0, "kitti-motions takes each n-th motion; 0: 20, with --quick 100");
-DEFINE_bool(resume, false, "continue an interrupted run of the same flags in --output");
-DEFINE_bool(overwrite, false, "begin anew where --output has results");
-DEFINE_bool(figures, true, "draw figures with rigel_plot.py (python3-matplotlib)");
+              "directory of KITTI odometry poses (00.txt, ...), for the experiment kitti-motions");
+DEFINE_string(kitti_root, "",
+              "directory of the KITTI odometry data; uses the poses in it, as --poses");
+DEFINE_int32(every, 0, "kitti-motions takes every n-th motion. 0: 20, with --quick 100");
+DEFINE_bool(resume, false, "continue an interrupted run with the same flags in --output");
+DEFINE_bool(overwrite, false, "discard earlier results in --output");
+DEFINE_bool(figures, true, "draw figures with rigel_plot.py (needs python3-matplotlib)");
 DEFINE_string(html, "",
-              "write tables and figures of the run to this one file, too; it needs no other file");
-DEFINE_bool(no_times, false, "leave times out, so that two runs give the same files");
-DEFINE_uint64(seed, 1, "the same seed makes the same frame pairs");
-DEFINE_int32(threads, 0, "pairs worked on at a time; 0: all cores. Results do not depend on it");
+              "also write all tables and figures to this one HTML file, which needs no other file");
+DEFINE_bool(no_times, false,
+            "leave run times out of the results, which are then equal in every run");
+DEFINE_uint64(seed, 1, "seed of the random numbers. The same seed gives the same frame pairs");
+DEFINE_int32(threads, 0,
+             "number of threads, 0 to 1024; 0: one per core. Results do not depend on it");
 
 namespace rigel {
 namespace {
@@ -46,22 +49,25 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kUsage[] =
-    "rigel_experiment: the experiments of the paper, and more on the same scene.\n"
+    "rigel_experiment: runs the experiments of the paper and further ones on the same scene.\n"
     "\n"
     "  rigel_experiment --name=all --quick --output=DIR\n"
     "\n"
-    "At each point of an experiment (a motion and, say, a noise level) all of its solvers run on\n"
-    "the same frame pairs, in the paper's RANSAC (the largest inlier count wins) and in Rigel's,\n"
-    "then the refinement. Per experiment NAME the directory gets NAME.json, NAME.csv, NAME.txt\n"
-    "(table) and figures/NAME*.png and .svg; and claims.md, claims.json: each claim of the paper\n"
-    "with a verdict, by rigel_claims.py (python3). NAME.points.jsonl keeps finished points: after\n"
-    "an interruption the same command with --resume continues. One run at a time works in a\n"
-    "directory. docs/experiments.md has sizes and times.\n";
+    "A point of an experiment is one motion with, for example, one noise level. At each point\n"
+    "all solvers of the experiment run on the same frame pairs, with RANSAC as in the paper\n"
+    "(maximum inlier count) and with Rigel's RANSAC, each followed by the refinement.\n"
+    "\n"
+    "The directory gets, for each experiment NAME, NAME.json, NAME.csv, NAME.txt (the table) and\n"
+    "figures/NAME*.png and .svg. claims.md and claims.json hold the verdict of rigel_claims.py\n"
+    "(needs python3) on each claim of the paper. NAME.points.jsonl stores finished points: to\n"
+    "continue an interrupted run, repeat the command with --resume. Only one run at a time can\n"
+    "use a directory. docs/experiments.md lists the experiments with their run times.\n";
 
 int PrintList() {
+  constexpr size_t kNameColumns = 20;  // columns: the longest name and two blanks
   for (const ExperimentSpec& spec : ExperimentCatalogue()) {
-    std::cout << spec.name << std::string(20 - std::string(spec.name).size(), ' ') << spec.about
-              << "\n";
+    std::cout << spec.name << std::string(kNameColumns - std::string(spec.name).size(), ' ')
+              << spec.about << "\n";
   }
   return ExitCode(FlushStdout());
 }
@@ -116,7 +122,7 @@ bool PrepareOutput(const std::vector<ExperimentPlan>& plans, RunLock* lock) {
   for (const ExperimentPlan& plan : plans) {
     if (FLAGS_resume || FLAGS_overwrite || !fs::exists(StorePath(plan), code)) continue;
     return Failed(PrintablePath(StorePath(plan)) +
-                  ": is of an earlier run; --resume continues it, --overwrite begins anew");
+                  ": is of an earlier run; --resume continues it, --overwrite discards it");
   }
   return true;
 }
@@ -194,7 +200,7 @@ ScriptOutcome RunOnResults(const std::string& name, const std::vector<std::strin
   const ScriptOutcome outcome = RunScript(name, arguments, &error);
   if (outcome == ScriptOutcome::kDone) return outcome;
   std::cerr << "no " << what << ": " << error << "\nThe results are in "
-            << PrintablePath(FLAGS_output) << "; once that is mended, get the " << what
+            << PrintablePath(FLAGS_output) << "; when this is fixed, get the " << what
             << " with\n  " << ScriptCommand(name, arguments) << "\n";
   return outcome;
 }

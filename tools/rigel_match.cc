@@ -17,42 +17,44 @@
 #include "rigel/tools/tool.h"
 
 DEFINE_string(kitti_root, "",
-              "KITTI odometry: the directory that holds sequences/ and, for the truth, poses/");
-DEFINE_string(sequence, "", "with --kitti_root: the sequence, a directory of sequences/ as 06");
-DEFINE_string(euroc_root, "",
-              "EuRoC: the directory mav0 of a sequence, or the one that holds mav0");
+              "directory of the KITTI odometry data, with sequences/ and, for the truth, poses/");
+DEFINE_string(sequence, "", "with --kitti_root: name of the sequence, for example 06");
+DEFINE_string(euroc_root, "", "directory of a EuRoC sequence: mav0, or the one that holds mav0");
 DEFINE_double(
     sync_tolerance_ms, -1,
-    "with --euroc_root: how far the time stamps of the two images of a frame may be apart; "
-    "by default a tenth of the frame interval");
-DEFINE_string(output, "",
-              "directory that gets the match files 000020-000021.matches, ...; made if missing; "
-              "one with match files is refused, but for --resume");
-DEFINE_int32(first, 0, "the first frame");
-DEFINE_int32(last, -1, "the last frame; by default that of the sequence");
-DEFINE_int32(stride, 1, "match frames that are this many apart");
-DEFINE_string(features, "sift", "sift or orb");
-DEFINE_int32(max_features, 2000, "key points of an image, the strongest");
-DEFINE_double(ratio, 0.8,
-              "Lowe's test: the nearest descriptor is at most this share of the distance of the "
-              "second nearest, seen from both images");
+    "with --euroc_root: maximum difference of the time stamps of the two images of a frame, "
+    "milliseconds. -1: a tenth of the frame interval");
+DEFINE_string(
+    output, "",
+    "directory for the match files 000020-000021.matches, ...; created if missing. Must not hold "
+    "match files, except with --resume");
+DEFINE_int32(first, 0, "first frame");
+DEFINE_int32(last, -1, "last frame; -1: the last of the sequence");
+DEFINE_int32(stride, 1, "match frames that are this many frames apart");
+DEFINE_string(features, "sift", "features: sift or orb");
+DEFINE_int32(max_features, 2000, "maximum number of key points per image; the strongest are kept");
+DEFINE_double(
+    ratio, 0.8,
+    "maximum ratio of Lowe's test: distance of the nearest descriptor to that of the second "
+    "nearest; applied in both directions");
 DEFINE_bool(resume, false,
-            "continue an interrupted run of the same settings: files that are there are kept");
-DEFINE_int32(threads, 1, "pairs worked on at the same time; the files do not depend on it");
+            "continue an interrupted run with the same settings; existing files are kept");
+DEFINE_int32(threads, 1, "number of threads, 1 to 1024. The files do not depend on it");
 
 namespace rigel {
 namespace {
 
 constexpr char kUsage[] =
-    "rigel_match: match files from the images of a stereo rig.\n"
+    "rigel_match: makes match files from the images of a stereo rig.\n"
     "\n"
-    "  rigel_match --kitti_root=DIR --sequence=06 --first=20 --last=27 --output=DIR\n"
-    "  rigel_match --euroc_root=DIR/V1_01_easy --output=DIR\n"
+    "  rigel_match --kitti_root=KITTI --sequence=06 --first=20 --last=27 --output=DIR\n"
+    "  rigel_match --euroc_root=EUROC/V1_01_easy --output=DIR\n"
     "\n"
-    "Matches of each two consecutive frames, in all four combinations of the left and the right\n"
-    "camera: each other's nearest descriptors that pass the ratio test, outliers and all. Pixels\n"
-    "are undistorted. The files get times, truth and gravity where the data set has a ground\n"
-    "truth. Frames count from 0; those of EuRoC are the images of one time.\n";
+    "Matches features of consecutive frames, in all four combinations of the left and the right\n"
+    "camera: pairs of mutually nearest descriptors that pass the ratio test, without a check of\n"
+    "the geometry. Pixels are undistorted. If the data set has a ground truth, the files get\n"
+    "times, truth and gravity. Frames count from 0; a frame of EuRoC is a pair of images of one\n"
+    "time.\n";
 
 bool IsKitti() { return !FLAGS_kitti_root.empty(); }
 

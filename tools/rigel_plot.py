@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""Figures (PNG and SVG) and a self-contained HTML page from the results of Rigel's programs.
+"""Draws the results of Rigel's programs: figures (PNG and SVG) and one HTML page.
 
-  rigel_plot.py DIR                        the results of rigel_experiment in DIR
+  rigel_plot.py DIR                        results of rigel_experiment in DIR
   rigel_plot.py report.json                rigel_compare --json: cumulative error curves (with
                                            --per_pair) or bars of the medians
   rigel_plot.py benchmark.json             rigel_benchmark --json: bars of the solvers' times
-  rigel_plot.py --estimate=E --truth=T     two trajectories in KITTI's format (12 numbers a line)
-                                           or TUM's (time x y z qx qy qz qw), from above: along
-                                           --down, with --forward up the page
+  rigel_plot.py --estimate=E --truth=T     two trajectories from above, in KITTI format (12 numbers
+                                           per line) or TUM format (time x y z qx qy qz qw)
 
 Exit code: 0 done, 1 failed, 2 wrong flag, 4 matplotlib is missing.
 """
@@ -133,18 +132,24 @@ def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, allow_abbrev=False,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("inputs", nargs="*", metavar="INPUT", help="reports or directories")
-    parser.add_argument("--output", default="figures", help="directory of the figures; made")
-    parser.add_argument("--html", help="join tables and figures in this one file")
-    parser.add_argument("--dpi", type=int, default=130, help="resolution of the PNG files")
-    parser.add_argument("--estimate", help="trajectory to draw")
-    parser.add_argument("--truth", help="true trajectory to draw")
-    parser.add_argument("--down", help="which way is down in the frame of the trajectories, of "
-                        "rigel_estimate's the body's at the start: +y, -z, ... or three numbers "
-                        "x,y,z; default: as a TUM file of rigel_estimate says, else by where the "
-                        "body drives: along its z, as a camera does, +y of it, else -z")
-    parser.add_argument("--forward", help="the same of forward, which is up the page")
-    parser.add_argument("--vertical", choices="xyz", help="older name: y is --down=+y "
-                        "--forward=+z, z is --down=-z --forward=+y, x is --down=-x --forward=+z")
+    parser.add_argument("--output", default="figures", metavar="DIR",
+                        help="directory for the figures, created if missing (default: figures)")
+    parser.add_argument("--html", metavar="FILE",
+                        help="also write all tables and figures to this one file")
+    parser.add_argument("--dpi", type=int, default=130,
+                        help="resolution of the PNG files, dots per inch (default: 130)")
+    parser.add_argument("--estimate", metavar="FILE", help="estimated trajectory")
+    parser.add_argument("--truth", metavar="FILE", help="true trajectory")
+    parser.add_argument("--down", metavar="AXIS",
+                        help="down direction in the frame of the trajectories, that of the first "
+                        "pose: +x, -x, +y, -y, +z, -z or three numbers x,y,z. Default: as a TUM "
+                        "file of rigel_estimate states; else +y if the body drives along z, as a "
+                        "camera does, or -z")
+    parser.add_argument("--forward", metavar="AXIS",
+                        help="forward direction, drawn upwards; written as --down")
+    parser.add_argument("--vertical", choices="xyz",
+                        help="older option: y is --down=+y --forward=+z, z is --down=-z "
+                        "--forward=+y, x is --down=-x --forward=+z")
     arguments = parser.parse_args()
     if arguments.vertical and (arguments.down or arguments.forward):
         parser.error("--vertical: is another name of --down and --forward")

@@ -7,7 +7,8 @@ import sys
 import tempfile
 import zlib
 
-NO_MATPLOTLIB = 4
+NO_MATPLOTLIB = 4  # exit code, as in python_script.cc
+# Environment variable: a second python was tried, there is no third.
 GUARD = "RIGEL_PLOT_SECOND_PYTHON"
 
 
@@ -133,10 +134,14 @@ def legends(figure, solvers, bound, top):
     return below - step - 0.1 / figure.get_figheight()
 
 
+# Decades of an axis that still has room for ticks at 1, 2 and 5 of each.
+FEW_DECADES = 2.5
+
+
 def plain_ticks(axis):
     """Of a logarithmic axis: 0.02, 0.05, 0.1 instead of powers of ten."""
     low, high = axis.get_view_interval()
-    few = math.log10(high / low) < 2.5 if low > 0 else False
+    few = math.log10(high / low) < FEW_DECADES if low > 0 else False
     axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5) if few else (1,),
                                                         numticks=20))
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda x, _: f"{x:g}"))

@@ -7,6 +7,15 @@ from rigel_files import Bad
 from rigel_plot_style import BLACK, BLUE, RED, new_figure
 
 
+# Forward has to be this far from the line of down, or it says too little of up on the page:
+# 30 degrees.
+COS_OF_LEAST_ANGLE, SIN_OF_LEAST_ANGLE = 0.866, 0.5
+# Cosine: an axis that is at least 60 degrees from down is across it. Of three axes one always is.
+ACROSS = 0.5
+# From 1, the length of an axis: a direction that is printed as +x was not turned by more.
+ROUNDING = 1e-9
+
+
 def cross(a, b):
     return tuple(a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] for k in range(3))
 
@@ -32,7 +41,7 @@ def direction(text):
 def direction_text(v):
     """How an axis of the figure is labelled: -y, or numbers."""
     for k in range(3):
-        if abs(v[k]) > 1 - 1e-9:
+        if abs(v[k]) > 1 - ROUNDING:
             return ("-" if v[k] < 0 else "+") + "xyz"[k]
     return "(" + ", ".join(f"{x:.3g}" for x in v) + ")"
 
@@ -128,16 +137,16 @@ def view_of(tracks, down, forward):
               "they are others", file=sys.stderr)
     if down is None:
         down = default[0]
-        if forward and abs(dot(down, forward)) > 0.866:
+        if forward and abs(dot(down, forward)) > COS_OF_LEAST_ANGLE:
             raise Bad("--forward: is along down; state --down, too")
     if forward is None:
         # Any axis across a down that was stated alone, that of the default if it is.
         axes = [default[1]] + [tuple(float(k == n) for n in range(3)) for k in (2, 0, 1)]
-        forward = next(a for a in axes if abs(dot(a, down)) < 0.5)
+        forward = next(a for a in axes if abs(dot(a, down)) < ACROSS)
     along = dot(down, forward)
     forward = tuple(f - along * d for f, d in zip(forward, down))
     size = math.hypot(*forward)
-    if size < 0.5:
+    if size < SIN_OF_LEAST_ANGLE:
         raise Bad("--forward: is within 30 degrees of the line of --down")
     forward = tuple(f / size for f in forward)
     return cross(down, forward), forward

@@ -20,61 +20,69 @@
 
 DEFINE_string(
     output, "",
-    "directory that gets the match files 000000.matches, ...; made if missing; one with match "
-    "files of other names is refused");
-DEFINE_int32(pairs, 50, "number of frame pairs");
-DEFINE_int32(num_cameras, 2, "cameras of the rig, 1 to 4; with --ring 1 to 16");
+    "directory for the match files 000000.matches, ...; created if missing. It must not hold "
+    "other match files");
+DEFINE_int32(pairs, 50, "number of frame pairs, one per file");
+DEFINE_int32(num_cameras, 2, "number of cameras of the rig: 1 to 4, with --ring 1 to 16");
 DEFINE_bool(
     ring, false,
-    "cameras on a circle of 1 m radius in the plane perpendicular to the body's down, at "
-    "equal angles, facing outwards; matches between cameras are of neighbours, which from 5 "
-    "cameras on see something in common without a turn");
-DEFINE_int32(num_matches, 200, "number of matches of each pair");
-DEFINE_double(noise_px, 0.5, "1-sigma image noise on each coordinate of both views");
-DEFINE_double(rotation_deg, 1, "rotation angle of each pair");
-DEFINE_string(rotation_axis, "y", "rotation axis: y (body Y) or random");
+    "place the cameras on a circle of 1 m radius around the vertical axis of the body, at equal "
+    "angles, looking outwards. Matches between cameras are between neighbours, whose fields of "
+    "view overlap from 5 cameras on");
+DEFINE_int32(num_matches, 200, "number of matches per pair");
+DEFINE_double(noise_px, 0.5,
+              "standard deviation of the image noise, pixels, on each coordinate in both views");
+DEFINE_double(rotation_deg, 1, "rotation angle of each pair, degrees");
+DEFINE_string(rotation_axis, "y", "rotation axis: y (Y of the body) or random");
 DEFINE_string(motion, "forward",
               "direction of translation: forward, random, sideways or planar; |t| is 1 m");
-DEFINE_double(inter_share, 0, "share of the matches between different cameras");
-DEFINE_double(outlier_share, 0, "share of the matches whose second point is anywhere in the image");
-DEFINE_double(moving_share, 0,
-              "share of the matches on a car that moves by itself, 0.5 to 2 m; not outliers");
-DEFINE_bool(match_scores, false,
-            "write scores as Lowe's ratios, lower for true matches than for outliers; else 0");
-DEFINE_uint64(seed, 1, "the same seed makes the same files");
-DEFINE_string(poses, "",
-              "directory of KITTI odometry poses (00.txt, ...): one pair for each two consecutive "
-              "frames, moved as they were; instead of --pairs, --motion and --rotation_*");
-DEFINE_int32(every, 1, "of the motions between consecutive frames of --poses take each n-th");
-DEFINE_int32(threads, 1, "files made at the same time; they do not depend on it");
+DEFINE_double(inter_share, 0, "share of matches between different cameras, 0 to 1");
+DEFINE_double(outlier_share, 0,
+              "share of outliers, 0 to 1: their second point is uniform in the image");
+DEFINE_double(
+    moving_share, 0,
+    "share of matches on a car that moves by itself, 0 to 1; it moves 0.5 to 2 m. These are not "
+    "counted as outliers");
+DEFINE_bool(
+    match_scores, false,
+    "write match scores like Lowe's ratio, lower for inliers than for outliers. Off: all scores "
+    "are 0");
+DEFINE_uint64(seed, 1, "seed of the random numbers. The same seed gives the same files");
+DEFINE_string(
+    poses, "",
+    "directory of KITTI odometry poses (00.txt, ...): one pair per two consecutive frames, with "
+    "their motion. Replaces --pairs, --motion, --rotation_deg and --rotation_axis");
+DEFINE_int32(every, 1, "with --poses: take every n-th pair of consecutive frames");
+DEFINE_int32(threads, 1, "number of threads, 1 to 1024. The files do not depend on it");
 
 namespace rigel {
 namespace {
 
 constexpr char kUsage[] =
-    "rigel_simulate: match files with known motion.\n"
+    "rigel_simulate: makes match files of a synthetic scene with known motion.\n"
     "\n"
     "  rigel_simulate --output=DIR --pairs=50 --motion=random --outlier_share=0.3\n"
     "\n"
-    "Two forward cameras 1 m apart (640 x 480 pixels, focal length 400), each moved by\n"
-    "N(0, 0.05 m) and turned by N(0, 0.1 rad) per axis, a third and a fourth above and below "
-    "them;\n"
-    "points uniform in the image of view 1, 5 to 30 m away. The files hold the truth, the noise\n"
-    "and the exact gravity, axis and (planar motion) normal.\n"
+    "The rig has two cameras that look forward, 1 m apart (640 x 480 pixels, focal length 400\n"
+    "pixels), each moved by N(0, 0.05 m) and rotated by N(0, 0.1 rad) per axis. A third and a\n"
+    "fourth camera are above and below them. Points are uniform in the image of view 1, at 5 to\n"
+    "30 m. The files hold the true motion, the image noise and the exact gravity and axis, for\n"
+    "planar motion also the normal.\n"
     "\n"
     "  rigel_simulate --output=DIR --ring --num_cameras=8 --rotation_deg=10\n"
     "\n"
-    "A rig that looks all round: such cameras on a circle of 1 m radius, exactly.\n"
+    "A rig that looks all around.\n"
     "\n"
     "  rigel_simulate --output=DIR --motion=random --moving_share=0.3\n"
     "\n"
     "With a car, a box 5 to 15 m in front of the rig, that moves over the ground and turns by up\n"
-    "to 3 degrees between the frames: matches that agree on a motion which is not the rig's.\n"
+    "to 3 degrees between the frames. Its matches agree on a motion that is not that of the rig.\n"
     "\n"
     "  rigel_simulate --output=DIR --poses=KITTI/poses --num_matches=300\n"
     "\n"
-    "The same rig and points, moved as a car was: the body is its left camera, the sequence the\n"
-    "name of the file, gravity the vertical of the sequence's first frame.\n";
+    "The same rig and points with the motions of recorded drives. The body is KITTI's left\n"
+    "camera, the sequence is the name of the file with the poses, and gravity is the vertical of\n"
+    "the first frame of the sequence.\n";
 
 std::string FileName(int k) {
   char name[32];

@@ -57,7 +57,7 @@ TEST_F(OutputsTest, AnInputIsNoOutputByAnyName) {
           RunTool("estimate", {"--matches=" + matches_, "--" + std::string(flag) + "=" + output});
       EXPECT_EXIT_CODE(run, 2);
       EXPECT_THAT(Lines(run.err)[0], AllOf(HasSubstr("--" + std::string(flag) + "=" + output),
-                                           HasSubstr("is the input " + file_)));
+                                           HasSubstr("would overwrite the input " + file_)));
       EXPECT_THAT(run.out, IsEmpty());
     }
     for (const char* tool : {"calibrate_prior", "compare"}) {
@@ -89,7 +89,7 @@ TEST_F(OutputsTest, AMergedReportIsNoOutput) {
   const std::string before = ReadText(report);
   const Outcome run = RunTool("compare", {"--merge=" + report, "--csv=" + Path("./0.json")});
   EXPECT_EXIT_CODE(run, 2);
-  EXPECT_THAT(run.err, HasSubstr("is the input " + report));
+  EXPECT_THAT(run.err, HasSubstr("would overwrite the input " + report));
   EXPECT_EQ(ReadText(report), before);
 }
 
@@ -187,7 +187,7 @@ TEST_F(OutputsTest, OneExperimentADirectory) {
   const Outcome page =
       RunTool("experiment", args + Args{"--overwrite", "--html=" + Path("out/outliers.csv")});
   EXPECT_EXIT_CODE(page, 2);
-  EXPECT_THAT(page.err, HasSubstr("goes to this file already"));
+  EXPECT_THAT(page.err, HasSubstr("writes to this file already"));
 }
 
 TEST_F(OutputsTest, AFlagFileNamesNoOther) {
@@ -251,7 +251,7 @@ TEST_F(OutputsTest, AFlagFileIsAnInput) {
   WriteText(flags, text);
   const Outcome run = RunTool("estimate", {"--flagfile=" + flags});
   EXPECT_EXIT_CODE(run, 2);
-  EXPECT_THAT(run.err, HasSubstr("is the input " + flags));
+  EXPECT_THAT(run.err, HasSubstr("would overwrite the input " + flags));
   EXPECT_EQ(ReadText(flags), text);
 }
 
