@@ -114,8 +114,8 @@ inline void BracketOfKnownRoot(double root, Bracket* bracket) {
 // True if the roots of a piece of several sign variations count as one.
 template <int N>
 inline bool IsSmallest(const double* c, const BernsteinPiece<N>& piece) {
-  // Shares of (0, 1). Roots closer than the first are one; below the second they are if rounding
-  // may have made them complex.
+  // Both are shares of (0, 1). Roots closer than the first count as one. Below the second they do if
+  // rounding may have made them complex.
   constexpr double kOneRoot = 1e-9;
   constexpr double kMaybeComplex = 1e-7;
   return piece.width < kOneRoot ||
