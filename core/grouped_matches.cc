@@ -177,15 +177,15 @@ Eigen::Matrix3d GroupedMatches::Fundamental(const MatchGroup& group, const Pose&
   return unproject_[group.camera2].transpose() * bRA;
 }
 
-double GroupedMatches::Score(const Pose& pose, double threshold_px, double bound, int* num_inliers,
-                             const LossTable* loss) const {
+double GroupedMatches::Score(const Pose& pose, double threshold_px, double bound,
+                             int* num_inliers) const {
   if (num_inliers != nullptr) *num_inliers = 0;
   double sum = 0.0;
   for (const MatchGroup& group : groups_) {
     if (sum > bound) break;
     const RowMajor3d F = Fundamental(group, pose);
     sum = TruncatedSampsonSum(Pixels(group), F.data(), threshold_px * threshold_px, bound, sum,
-                              num_inliers, BestCpuPath(), loss);
+                              num_inliers);
   }
   return sum;
 }
@@ -197,15 +197,15 @@ double GroupedMatches::DecidedParallax(const MatchGroup& group, double threshold
 }
 
 double GroupedMatches::ScoreInFront(const Pose& pose, double threshold_px, double bound,
-                                    int* num_inliers, const LossTable* loss) const {
+                                    int* num_inliers) const {
   if (num_inliers != nullptr) *num_inliers = 0;
   double sum = 0.0;
   for (const MatchGroup& group : groups_) {
     if (sum > bound) break;
     const RowMajor3d F = Fundamental(group, pose);
-    sum = TruncatedSampsonSumInFront(
-        Pixels(group), Directions(group), F.data(), MotionOf(group, pose, threshold_px),
-        threshold_px * threshold_px, bound, sum, num_inliers, BestCpuPath(), loss);
+    sum = TruncatedSampsonSumInFront(Pixels(group), Directions(group), F.data(),
+                                     MotionOf(group, pose, threshold_px),
+                                     threshold_px * threshold_px, bound, sum, num_inliers);
   }
   return sum;
 }

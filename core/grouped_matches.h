@@ -66,15 +66,13 @@ class GroupedMatches {
 
   // MSAC score: sum min(r^2, threshold^2) of the Sampson errors, pixels^2. Once it exceeds `bound`
   // the rest is not looked at: the value returned is then above `bound`, but not the score.
-  // With a `loss` table the sum is of that loss. `num_inliers` may be null: counting takes time.
-  double Score(const Pose& pose, double threshold_px, double bound, int* num_inliers,
-               const LossTable* loss = nullptr) const;
+  // `num_inliers` may be null: counting takes time.
+  double Score(const Pose& pose, double threshold_px, double bound, int* num_inliers) const;
 
   // The same where a match that lies behind a camera counts as an outlier too. An outlier far from
   // where its point could be has much leverage, and half of those that an estimate could bend
   // to would lie behind a camera. Never below Score(), to the last bit.
-  double ScoreInFront(const Pose& pose, double threshold_px, double bound, int* num_inliers,
-                      const LossTable* loss = nullptr) const;
+  double ScoreInFront(const Pose& pose, double threshold_px, double bound, int* num_inliers) const;
 
   // 1 for matches of a Sampson error below the threshold that do not lie behind a camera, else 0,
   // in grouped order; returns their number. `errors` gets the squared Sampson errors. Both are

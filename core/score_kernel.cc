@@ -100,7 +100,7 @@ RIGEL_KERNEL_BODY void RejectBehind(const RayArrays& rays, int begin, int size,
 // `rays` and `motion` are null where depths are not looked at.
 RIGEL_KERNEL_BODY double Sum(const PixelArrays& pixels, const RayArrays* rays, const double F[9],
                              const GroupMotion* motion, double t2, double bound, double sum,
-                             int* num_inliers, const LossTable* loss) {
+                             int* num_inliers) {
   int inliers = 0;
   for (int begin = 0; begin < pixels.size && !(sum > bound); begin += kBlock) {
     const PixelArrays block = BlockAt(pixels, begin);
@@ -113,15 +113,6 @@ RIGEL_KERNEL_BODY double Sum(const PixelArrays& pixels, const RayArrays* rays, c
       int count = 0;
       for (int i = 0; i < kBlock; ++i) count += e[i] < t2 ? 1 : 0;
       inliers += count;
-    }
-    if (loss != nullptr) {
-      const double scale = LossTable::kBins / t2;
-      for (int i = 0; i < kBlock; ++i) {
-        const double s = e[i] * scale;
-        const int bin = static_cast<int>(s);
-        const double low = loss->values[bin];
-        e[i] = low + (s - bin) * (loss->values[bin + 1] - low);
-      }
     }
     for (int i = block.size; i < kBlock; ++i) e[i] = 0.0;
     static_assert(kBlock == 8 * kLanes, "the sum is over eight vectors");
@@ -206,16 +197,14 @@ RIGEL_TARGET_AVX2 void CountAvx2(const PixelArrays& pixels, const RayArrays& ray
 }
 
 RIGEL_TARGET_AVX2 double SumAvx2(const PixelArrays& pixels, const double F[9], double t2,
-                                 double bound, double sum, int* num_inliers,
-                                 const LossTable* loss) {
-  return Sum(pixels, nullptr, F, nullptr, t2, bound, sum, num_inliers, loss);
+                                 double bound, double sum, int* num_inliers) {
+  return Sum(pixels, nullptr, F, nullptr, t2, bound, sum, num_inliers);
 }
 
 RIGEL_TARGET_AVX2 double SumInFrontAvx2(const PixelArrays& pixels, const RayArrays& rays,
                                         const double F[9], const GroupMotion& motion, double t2,
-                                        double bound, double sum, int* num_inliers,
-                                        const LossTable* loss) {
-  return Sum(pixels, &rays, F, &motion, t2, bound, sum, num_inliers, loss);
+                                        double bound, double sum, int* num_inliers) {
+  return Sum(pixels, &rays, F, &motion, t2, bound, sum, num_inliers);
 }
 
 RIGEL_TARGET_AVX2 void AllErrorsAvx2(const PixelArrays& pixels, const double F[9],
@@ -233,24 +222,23 @@ RIGEL_TARGET_AVX2 int SelectAvx2(const PixelArrays& pixels, const RayArrays& ray
 }  // namespace
 
 double TruncatedSampsonSum(const PixelArrays& pixels, const double F[9], double t2, double bound,
-                           double sum, int* num_inliers, [[maybe_unused]] CpuPath path,
-                           const LossTable* loss) {
+                           double sum, int* num_inliers, [[maybe_unused]] CpuPath path) {
 #if RIGEL_HAS_AVX2_PATH
-  if (path == CpuPath::kAvx2) return SumAvx2(pixels, F, t2, bound, sum, num_inliers, loss);
+  if (path == CpuPath::kAvx2) return SumAvx2(pixels, F, t2, bound, sum, num_inliers);
 #endif
-  return Sum(pixels, nullptr, F, nullptr, t2, bound, sum, num_inliers, loss);
+  return Sum(pixels, nullptr, F, nullptr, t2, bound, sum, num_inliers);
 }
 
 double TruncatedSampsonSumInFront(const PixelArrays& pixels, const RayArrays& rays,
                                   const double F[9], const GroupMotion& motion, double t2,
                                   double bound, double sum, int* num_inliers,
-                                  [[maybe_unused]] CpuPath path, const LossTable* loss) {
+                                  [[maybe_unused]] CpuPath path) {
 #if RIGEL_HAS_AVX2_PATH
   if (path == CpuPath::kAvx2) {
-    return SumInFrontAvx2(pixels, rays, F, motion, t2, bound, sum, num_inliers, loss);
+    return SumInFrontAvx2(pixels, rays, F, motion, t2, bound, sum, num_inliers);
   }
 #endif
-  return Sum(pixels, &rays, F, &motion, t2, bound, sum, num_inliers, loss);
+  return Sum(pixels, &rays, F, &motion, t2, bound, sum, num_inliers);
 }
 
 void SquaredSampsonErrors(const PixelArrays& pixels, const double F[9], double* squared_errors,

@@ -40,35 +40,20 @@ struct GroupMotion {
   double min_sin2 = 0.0;  // of the parallax: below it noise decides the depths
 };
 
-// A loss of r^2 in [0, t2], rising from 0 to t2: its values at k t2 / kBins, and linear between
-// them.
-struct LossTable {
-  // More would follow a loss more closely, and take more of the cache: these are half a kilobyte.
-  static constexpr int kBins = 64;
-  double values[kBins + 2];  // the last two are t2
-};
-
-// That of MAGSAC++ (Barath et al. 2020, eq. 6) for residuals of one dimension, scaled to t2 at
-// r^2 = t2.
-LossTable MagsacTable(double t2);
-
 // Adds sum min(r^2, t2) over the matches to `sum` and returns it, where r is the Sampson error in
 // pixels under the row-major centred fundamental matrix F; `num_inliers`, unless null, grows by the
 // number of matches with r^2 < t2. A match with r = 0/0 (F = 0, an epipole) counts t2. Stops once
 // the sum exceeds `bound`: what is returned below or at it is complete, and as no term is negative
 // the complete sum is never below what is returned.
-//
-// With a `loss` table, each term is that loss of r^2 instead.
 double TruncatedSampsonSum(const PixelArrays& pixels, const double F[9], double t2, double bound,
-                           double sum, int* num_inliers, CpuPath path = BestCpuPath(),
-                           const LossTable* loss = nullptr);
+                           double sum, int* num_inliers, CpuPath path = BestCpuPath());
 
 // The same where matches behind a camera count t2 too (TestCheirality() in cheirality.h says
 // kBehind or kMixed). In the same order: never below the sum above, to the last bit.
 double TruncatedSampsonSumInFront(const PixelArrays& pixels, const RayArrays& rays,
                                   const double F[9], const GroupMotion& motion, double t2,
                                   double bound, double sum, int* num_inliers,
-                                  CpuPath path = BestCpuPath(), const LossTable* loss = nullptr);
+                                  CpuPath path = BestCpuPath());
 
 // Squared Sampson errors one by one; infinite where r = 0/0.
 void SquaredSampsonErrors(const PixelArrays& pixels, const double F[9], double* squared_errors,

@@ -10,12 +10,12 @@
 namespace rigel {
 namespace {
 
-// Below this share of the largest, an eigenvalue is zero but for rounding.
+// An eigenvalue below this share of the largest is zero up to rounding.
 constexpr double kRankTolerance = 1e-12;
 
 Matrix6d Symmetric(const Matrix6d& m) { return 0.5 * (m + m.transpose()); }
 
-// `inverse` is that of `jacobian`.
+// `inverse` is the inverse of `jacobian`.
 BetweenFactor Convert(const Pose& f2_from_f1, const Matrix6d& jacobian, const Matrix6d& inverse,
                       const Matrix6d& covariance, const Matrix6d& information) {
   BetweenFactor factor;
@@ -25,7 +25,7 @@ BetweenFactor Convert(const Pose& f2_from_f1, const Matrix6d& jacobian, const Ma
   return factor;
 }
 
-// Written out, so that what is zero stays so.
+// Written out term by term, so that zeros stay exactly zero.
 Matrix6d InverseGtsamJacobian(const Pose& f2_from_f1) {
   Matrix6d inverse = -Matrix6d::Identity();
   inverse.block<3, 3>(3, 0) = Skew(f2_from_f1.t);
@@ -107,7 +107,7 @@ Matrix6d InformationMatrix(const RefineSummary& summary, const Pose& f2_from_f1)
   const Eigen::Vector3d b = MotionOfPoint(f2_from_f1, point).t;
   const double norm = b.norm();
   if (!summary.scale_free && norm > 0) {
-    // The direction without information is known: without it to the last digit.
+    // Remove rounding along the direction that has no information.
     Eigen::Matrix<double, 6, 1> held = Eigen::Matrix<double, 6, 1>::Zero();
     held.tail<3>() = b / norm;
     const Matrix6d free = Matrix6d::Identity() - held * held.transpose();
@@ -149,7 +149,7 @@ void SetUndeterminedLength(double length, Pose* f2_from_f1, RefineSummary* summa
 }
 
 Matrix6d SqrtInformation(const Matrix6d& information) {
-  // Radians and metres are unlike: small eigenvalues of the whole would be lost beside large ones.
+  // Scale first: radians and metres differ in size, and small eigenvalues would be lost.
   Eigen::Matrix<double, 6, 1> scale;
   for (int k = 0; k < 6; ++k) scale(k) = information(k, k) > 0 ? std::sqrt(information(k, k)) : 1.0;
   const Matrix6d scaled = scale.cwiseInverse().asDiagonal() * Symmetric(information) *

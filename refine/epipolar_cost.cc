@@ -11,7 +11,7 @@
 namespace rigel {
 namespace {
 
-// Below this share of its terms a sum is rounding: 1.4e-14.
+// A sum below this share of its terms is rounding error: 1.4e-14.
 constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
 
 // X_to = R X_from + t, from two parameter blocks.
@@ -34,8 +34,8 @@ struct PoseBlocks {
     return t.allFinite();
   }
 
-  // The derivative by the quaternion block from that by w in R <- Exp(w) R. A step dq turns by
-  // w = 2 vec(dq q*) / |q|, of the normalized q, wherever dq points; along q it is zero.
+  // Converts the derivative by w in R <- Exp(w) R to that by the quaternion block. A step dq is the
+  // rotation w = 2 vec(dq q*) / |q| of the normalized q; along q it is zero.
   void WriteQuaternionJacobian(const Eigen::Vector3d& by_w, QuaternionOrder order,
                                double* jacobian) const {
     const double scale = 2.0 / norm;
@@ -154,7 +154,7 @@ class EpipolarCost final : public ceres::CostFunction {
   }
 
  private:
-  // The residual, and its gradient if one is wanted. False at E = 0, where there is none.
+  // The residual, and its gradient if `by` is not null. False at E = 0, where there is no residual.
   //
   // With y = R Q_i u_i and z = Q_j u_j, in f2, the constraint is C = z . (b x y) = u_j'E u_i. It is
   // divided by |g|, g = (g_i, g_j) its derivatives by the pixels. Since d|g|^2 / 2 = h_j'dE u_i +

@@ -12,34 +12,36 @@
 //                graph; f1 is the body that camera i = match.camera1 looked from, f2 the one of
 //                camera j = match.camera2. The motion is T_f2_f1 = T_w_b2^-1 T_w_b1.
 //   q_k, s_k     body_from_camera of camera k: X_body = R(q_k) X_cam + s_k
-// Ceres takes no block twice in one residual block, so an intra-camera match (camera i = camera j)
-// has the blocks of its camera once; Match::IsIntra() and ceres::CostFunction's
-// parameter_block_sizes() say which of the two a cost is. For the same reason the two poses of
-// MakeAbsoluteEpipolarCost must be different blocks.
+// Ceres takes no block twice in one residual block. So an intra-camera match (camera i = camera j)
+// has the blocks of its camera once; Match::IsIntra() and parameter_block_sizes() of the cost tell
+// the two cases apart. For the same reason the two poses of MakeAbsoluteEpipolarCost must be
+// different blocks.
 //
-// Residual: one, r = C / |dC/d(pixel_i, pixel_j)| / sigma_px, the signed Sampson error of
-// core/epipolar.h in pixels over the standard deviation of an image coordinate, so that a robust
-// loss counts in sigmas. Source: the generalized epipolar constraint of Li, Liu, Han, Lv (eq. b2);
-// Sampson's first-order distance of each camera pair.
+// Residual: one number, r = C / |dC/d(pixel_i, pixel_j)| / sigma_px. It is the signed Sampson error
+// of core/epipolar.h in pixels, over the standard deviation of an image coordinate. So the scale of
+// a robust loss is in sigmas. C is the generalized epipolar constraint (paper eq. b2: Li, Liu, Han,
+// Lv). Its first-order (Sampson) distance is taken for each camera pair.
 //
-// A quaternion need not be of unit length: it is normalized inside and the Jacobian is that of the
-// normalized one (it is orthogonal to q). Give the block ceres::QuaternionManifold (kCeres) or
-// ceres::EigenQuaternionManifold (kEigen) all the same.
+// A quaternion need not have unit length: it is normalized inside, and the Jacobian is that of the
+// normalized one (orthogonal to q). Still set the manifold of the block: ceres::QuaternionManifold
+// (kCeres) or ceres::EigenQuaternionManifold (kEigen).
 //
-// Defined as zero with a zero Jacobian, as in Refine(), at an epipole (the gradient vanishes up to
-// rounding). At E = 0 (the two cameras in one place up to rounding, for an intra-camera match the
-// zero motion) there is no residual: it depends on the direction in which they part. Evaluate()
-// returns false there, so that a problem that starts with two equal poses ends as a failure, and
-// not as converged where it stands. Start from a motion in roughly the right direction and of
-// roughly the right length, such as EstimateMotion()'s. Poses that are nearly equal are as bad: the
-// derivative by t grows as 1 / |b|, steps are as small as |b|, and Ceres may call that converged.
-// The error is the same for t
-// and -t where scale is not observable; where it is, a start of the wrong sign mostly comes back,
-// but may end in a false minimum near t = 0. Intra-camera matches alone hardly determine the length
-// of t_21 (docs/conventions.md): hold it by other residuals or by a manifold.
-// Refine() counts matches near an epipole less (EpipoleWeights() of
-// refine/least_squares/uncertainty.h); here every match counts in full: give those a larger
-// sigma_px, sigma / weight, for the same.
+// Special cases:
+// - At an epipole (the gradient vanishes up to rounding) the residual and its Jacobian are zero, as
+//   in Refine().
+// - At E = 0 Evaluate() returns false. There the two cameras are at the same place up to rounding;
+//   for an intra-camera match that is zero motion. The residual would depend on the direction in
+//   which they separate. So a problem that starts with two equal poses fails and does not converge
+//   at its start.
+// - Poses that are nearly equal are a bad start too. The derivative by t grows as 1 / |b|, so steps
+//   are as small as |b|, and Ceres may take that for convergence. Start with a motion of about the
+//   right direction and length, such as that of EstimateMotion().
+// - If scale is not observable, the error is the same for t and -t. If it is, a start with the
+//   wrong sign mostly converges to the right one, but may end in a false minimum near t = 0.
+// - Intra-camera matches alone hardly determine the length of t_21 (docs/conventions.md). Hold it
+//   by other residuals or by a manifold.
+// - Refine() gives matches near an epipole a smaller weight (EpipoleWeights() of
+//   refine/least_squares/uncertainty.h). For the same effect pass sigma_px / weight as sigma_px.
 //
 // Errors: a factory returns null if sigma_px is not within 1e-12 and 1e12, the rig is not valid
 // (Rig::IsValid), the match names a camera that is not there, a pixel is not finite or `order` is
@@ -47,9 +49,9 @@
 // Evaluate() returns false if a parameter is not finite or a quaternion is zero (a squared norm
 // that underflows or overflows counts as such), at E = 0, and for nothing else.
 //
-// Ownership is the caller's, who hands it to the ceres::Problem, as with all of Ceres' cost
-// functions. Rig and match are copied: they need not outlive the cost. A cost is immutable: it may
-// be evaluated by many threads at once and shared by residual blocks. Nothing is logged.
+// Ownership: the caller owns the cost and usually passes it to a ceres::Problem, as any cost
+// function. Rig and match are copied: they need not outlive the cost. A cost is immutable: many
+// threads may evaluate it at once, and residual blocks may share it. Nothing is logged.
 #ifndef RIGEL_REFINE_EPIPOLAR_COST_H_
 #define RIGEL_REFINE_EPIPOLAR_COST_H_
 
@@ -60,7 +62,7 @@
 
 namespace rigel {
 
-// How a quaternion stands in its parameter block.
+// The order of a quaternion's numbers in its parameter block.
 enum class QuaternionOrder {
   kCeres,  // w x y z: ceres::QuaternionManifold
   kEigen,  // x y z w, Eigen::Quaterniond::coeffs(): ceres::EigenQuaternionManifold
@@ -72,7 +74,7 @@ enum class QuaternionOrder {
 [[nodiscard]] ceres::CostFunction* MakeAbsoluteEpipolarCost(const Rig& rig, const Match& match,
                                                             double sigma_px, QuaternionOrder order);
 
-// For refining the calibration: of the rig only the intrinsics enter, its Q and s are the blocks'.
+// To refine the calibration. Only the intrinsics of the rig are used; Q and s are parameter blocks.
 [[nodiscard]] ceres::CostFunction* MakeRelativeEpipolarCostWithExtrinsics(const Rig& rig,
                                                                           const Match& match,
                                                                           double sigma_px,

@@ -44,7 +44,7 @@ MotionEstimate Refused(EstimateStatus status, const std::string& message) {
   return estimate;
 }
 
-// Ackermann motion has a front: that of the rig where the prior states none.
+// The prior, with the rig's forward direction if it states none. Ackermann motion needs it.
 MotionPrior WithForward(const FramePair& pair) {
   MotionPrior prior = pair.prior;
   BodyAxes axes;
@@ -68,21 +68,21 @@ bool EstimateOptions::IsValid(std::string* error) const {
     *error = "there is no solver '" + solver + "'; expected one of " + SolverNamesWithAuto();
     return false;
   }
-  RefineOptions refined = refine;
-  // "auto" may find a prior of any kind.
+  RefineOptions refined(refine);
+  // With "auto" the prior's kind is not known yet; any kind is valid here.
   refined.prior_kind = solver == kAutoSolver ? PriorKind::kVertical : FindSolver(solver)->prior;
   return ransac.IsValid(error) && (!refine_motion || refined.IsValid(error)) &&
          IsValidTimeLimit(time_limit, error);
 }
 
-MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pair) {
-  Stop stop(given.time_limit, given.cancel);
+MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& pair) {
+  Stop stop(options.time_limit, options.cancel);
   std::string error;
-  if (!given.IsValid(&error) || !pair.IsValid(&error)) {
+  if (!options.IsValid(&error) || !pair.IsValid(&error)) {
     return Refused(EstimateStatus::kInvalidInput, error);
   }
-  EstimateOptions options = given;
-  options.ransac.threshold_px = ThresholdPx(given.ransac.threshold_px, pair.rig);
+  RansacOptions ransac_options = options.ransac;
+  ransac_options.threshold_px = ThresholdPx(options.ransac.threshold_px, pair.rig);
   const double distance = pair.prior.distance.value_or(0.0);
   if (options.refine_motion && options.refine.scale == ScaleMode::kFixed &&
       !(distance > 0 && std::isfinite(distance))) {
@@ -112,16 +112,16 @@ MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pai
   }
 
   const auto ransac_start = std::chrono::steady_clock::now();
-  // Of the motion of the rig's centre; the body's is made of it in the end. The Ackermann model is
-  // of the body's origin.
+  // The search is for the motion of the rig's centre; the body's motion is computed from it at the
+  // end. The Ackermann model describes the motion of the body's origin.
   const bool ackermann = solvers[0]->solve == &Solve2ptAckermann;
   const Eigen::Vector3d centre =
       ackermann ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : RigCentre(pair.rig);
   const GroupedMatches matches(WithOrigin(pair.rig, centre), pair.matches);
-  MotionSearch search = SearchMotion(solvers, prior, matches, options.ransac, &stop);
-  // The loop knows how many of those that it scored.
-  if (search.best.found && matches.size() > options.ransac.max_scored) {
-    matches.ScoreInFront(search.best.best, options.ransac.threshold_px,
+  MotionSearch search = SearchMotion(solvers, prior, matches, ransac_options, &stop);
+  // RANSAC counted the inliers among the matches that it scored; this counts them among all.
+  if (search.best.found && matches.size() > ransac_options.max_scored) {
+    matches.ScoreInFront(search.best.best, ransac_options.threshold_px,
                          std::numeric_limits<double>::infinity(), &search.best.num_inliers);
   }
   MotionEstimate estimate;
@@ -153,9 +153,9 @@ MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pai
   estimate.message = estimate.stopped != StopReason::kNone ? stop.Message() : "ok";
   if (options.refine_motion) {
     const auto refine_start = std::chrono::steady_clock::now();
-    RefineOptions refine = options.refine;
+    RefineOptions refine(options.refine);
     refine.prior_kind = search.solver->prior;
-    refine.threshold_px = options.ransac.threshold_px;
+    refine.threshold_px = ransac_options.threshold_px;
     refine.num_tries = static_cast<double>(search.hypotheses);
     const std::optional<double> left = stop.SecondsLeft();
     if (left) refine.time_limit = std::min(*left, refine.time_limit.value_or(*left));
@@ -166,7 +166,7 @@ MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pai
       estimate.num_inliers = estimate.refine.num_inliers;
       if (estimate.refine.stopped != StopReason::kNone) {
         estimate.stopped = estimate.refine.stopped;
-        // Refine() knows of no more than what was left of the limit.
+        // Refine() was given only the rest of the limit; the message names the whole.
         if (stop.Asked()) estimate.refine.message = stop.Message();
         estimate.message = estimate.refine.message;
       }
@@ -180,29 +180,29 @@ MotionEstimate EstimateMotion(const EstimateOptions& given, const FramePair& pai
   const bool exceeds_chance =
       estimate.refine.IsSolutionUsable()
           ? estimate.refine.exceeds_chance
-          : ExceedsChance(matches, about_centre, estimate.num_inliers, options.ransac.threshold_px,
+          : ExceedsChance(matches, about_centre, estimate.num_inliers, ransac_options.threshold_px,
                           static_cast<double>(search.hypotheses));
   if (!exceeds_chance) {
     estimate.status = EstimateStatus::kNoConsensus;
     estimate.message = std::to_string(estimate.num_inliers) + " of " +
                        std::to_string(matches.size()) +
                        " matches agree on a motion, no more than chance allows";
-    if (given.solver != kAutoSolver && search.solver->prior != PriorKind::kNone) {
+    if (options.solver != kAutoSolver && search.solver->prior != PriorKind::kNone) {
       estimate.message += "; is the prior right?";
     }
     if (estimate.stopped != StopReason::kNone) estimate.message += "; " + stop.Message();
     return estimate;
   }
   const Doubt doubt =
-      FindDoubt(pair.prior, *search.solver, about_centre, matches, options.ransac.threshold_px);
+      FindDoubt(pair.prior, *search.solver, about_centre, matches, ransac_options.threshold_px);
   estimate.doubtful = doubt.Any();
   estimate.doubt = doubt.Reason();
   if (estimate.status == EstimateStatus::kSuccess && options.refine_motion && options.check_rig &&
       estimate.stopped == StopReason::kNone) {
-    EstimateOptions again = given;
+    EstimateOptions again = options;
     again.time_limit = stop.SecondsLeft();
     again.check_rig = false;
-    again.ransac.max_iterations = std::min(given.ransac.max_iterations, kMaxSwapIterations);
+    again.ransac.max_iterations = std::min(options.ransac.max_iterations, kMaxSwapIterations);
     const auto inliers_with = [&again](const FramePair& other) {
       const MotionEstimate e = EstimateMotion(again, other);
       return e.status == EstimateStatus::kSuccess ? e.num_inliers : 0;

@@ -20,27 +20,29 @@
 namespace rigel {
 
 struct EstimateOptions {
-  // A name of SolverCatalogue(), or "auto": SuggestSolvers() of solver_choice.h, as many of them as
-  // it takes to find a motion beyond doubt (motion_search.h), so that a wrong prior costs time and
-  // not accuracy (unless refine.use_prior weighs it). With a form that takes the prior as exact
-  // (kPrior, kPriorDepths) only the first of them.
+  // A name of SolverCatalogue(), or "auto". "auto" tries the solvers of SuggestSolvers()
+  // (solver_choice.h) in turn until a motion is not doubtful (motion_search.h). So a wrong prior
+  // costs time and not accuracy, unless refine.use_prior weights it. With a form that takes the
+  // prior as exact (kPrior, kPriorDepths), "auto" uses only the first solver.
   std::string solver = "auto";
-  RansacOptions ransac;  // of "auto", its max_iterations are those of all solvers together
+  RansacOptions ransac;  // with "auto", all solvers share its max_iterations
   bool refine_motion = true;
   // ScaleMode::kFixed needs the prior's distance: the |t| that RANSAC finds may be arbitrary.
-  // The solver's prior replaces refine.prior_kind; refine.threshold_px is taken from ransac.
-  RefineOptions refine;
+  RefineSettings refine;
 
-  // Seconds from the call on, >= 0: after them the result is the best motion found by then, see
-  // MotionEstimate::stopped. What prepares the matches and a step in progress are not cut short.
+  // Seconds from the call on, >= 0. After them the call returns the best motion found by then; see
+  // MotionEstimate::stopped. It does not interrupt the preparation of the matches or a step in
+  // progress.
   std::optional<double> time_limit;
-  // Ends the call likewise once it is true; any thread may set it. Null, or outlives the call.
+  // Ends the call in the same way once it is true; any thread may set it. Null, or outlives the
+  // call.
   const std::atomic<bool>* cancel = nullptr;
 
-  // Looks for what contradicts the rig (MotionEstimate::rig_doubts). Takes time where something
-  // does: a second estimate or a few.
+  // Looks for matches that contradict the rig (MotionEstimate::rig_doubts). If there are some, it
+  // takes the time of one or a few more estimates.
   bool check_rig = true;
 
+  // False with a message in `error` (not null) if a member is out of its range.
   bool IsValid(std::string* error) const;
 };
 
@@ -51,7 +53,7 @@ enum class EstimateStatus {
   kTooFewMatches,  // fewer than the solver's sample
   kNoSolution,     // no sample gave a motion
   kNotRefined,     // RANSAC succeeded, the refinement did not: pose is RANSAC's
-  kNoConsensus,    // no more matches agree than chance allows: pose means nothing
+  kNoConsensus,    // random matches could agree as well: pose means nothing
 };
 
 const char* EstimateStatusName(EstimateStatus status);
@@ -61,9 +63,9 @@ bool ParseEstimateStatus(std::string_view name, EstimateStatus* status);
 struct MotionEstimate {
   EstimateStatus status = EstimateStatus::kNotRun;
   std::string message = "EstimateMotion was not called.";
-  std::string solver;               // whose hypotheses led to it
-  std::vector<SolverTrial> trials;  // what became of each solver; several with "auto"
-  Pose pose;                        // the estimate: refined where that was asked for and done
+  std::string solver;               // the solver whose hypothesis led to the estimate
+  std::vector<SolverTrial> trials;  // the result of each solver; several with "auto"
+  Pose pose;                        // f2_from_f1, metres; refined if that was asked for and done
   Solution raw;  // the best-scoring minimal hypothesis of RANSAC, before any optimization
   int num_inliers = 0;
   double inlier_ratio = 0.0;
@@ -73,20 +75,21 @@ struct MotionEstimate {
   double refine_ms = 0.0;
   RefineSummary refine;
   // What ended the call early; message says it too. The motion, if there is one, is the best found
-  // by then, and refine states no uncertainty unless it was done.
+  // by then. `refine` states no uncertainty unless the refinement was done.
   StopReason stopped = StopReason::kNone;
-  // Something speaks against the motion, as where the prior is wrong: see Doubt.
+  // The motion may be wrong, for example because of a wrong prior: see Doubt.
   bool doubtful = false;
-  std::string doubt;                 // what; empty if nothing does
-  std::vector<RigDoubt> rig_doubts;  // of a refined motion; the estimate is as without them
+  std::string doubt;                 // why; empty if it is not doubtful
+  std::vector<RigDoubt> rig_doubts;  // of a refined motion; they do not change the estimate
 
   bool HasMotion() const {
     return status == EstimateStatus::kSuccess || status == EstimateStatus::kNotRefined;
   }
 };
 
-// Never throws, exits or logs on what `pair` or `options` hold. Thread-safe; the same input and
-// seed give the same result, unless a time limit or a cancel ended the search.
+// Estimates the motion f2_from_f1 of the body: X_2 = R X_1 + t, metres. Errors are in the status.
+// Never throws, exits or logs because of what `pair` or `options` hold. Thread-safe. The same input
+// and seed give the same result, unless a time limit or `cancel` ended the search.
 MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& pair);
 
 }  // namespace rigel

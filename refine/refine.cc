@@ -34,13 +34,13 @@ bool WeighsDistance(const RefineOptions& options, const MotionPrior& prior) {
   return options.use_prior && prior.distance.has_value() && prior.distance_sigma > 0;
 }
 
-// |t| of the body enters the fit, which is then one of the body's motion.
+// True if |t| of the body enters the fit. The fit is then of the body's motion.
 bool UsesBodyLength(const RefineOptions& options, const MotionPrior& prior) {
   return options.scale == ScaleMode::kFixed || WeighsDistance(options, prior);
 }
 
-// Poses are motions of `point`, which is the origin of the rig of `matches`; the summary is of the
-// body.
+// One refinement. Its poses are motions of `point` (body frame), which is the origin of the rig of
+// `matches`. The summary is of the body.
 class Refiner {
  public:
   Refiner(const RefineOptions& options, const GroupedMatches& matches, const Eigen::Vector3d& point,
@@ -105,7 +105,7 @@ class Refiner {
   std::vector<double> match_weights_;       // the same; 0: no inlier
   std::vector<double> weights_;             // see SetWeights()
   int num_inliers_ = 0;
-  std::optional<Pose> selected_at_;  // what mask_ belongs to
+  std::optional<Pose> selected_at_;  // the pose of the last selection
   bool excludes_chance_ = false;     // inlier_selection.h; at a minimum only
   double noise_px_ = 1.0;
   bool scale_free_ = true;
@@ -126,7 +126,7 @@ bool Refiner::Fail(Termination termination, const std::string& message) {
   return false;
 }
 
-// True if the selection changed. Asked for the same motion more than once.
+// True if the selection changed. It is called more than once for the same motion.
 bool Refiner::SelectInliers(const Pose& pose) {
   if (selected_at_ && selected_at_->R == pose.R && selected_at_->t == pose.t) return false;
   selected_at_ = pose;
@@ -142,7 +142,7 @@ bool Refiner::SelectInliers(const Pose& pose) {
 }
 
 double Refiner::MedianResidual() const {
-  // One more than there are inliers: what is no inlier is overwritten.
+  // One entry more, so that the loop can write each match and overwrite those that are no inliers.
   std::vector<double> errors(num_inliers_ + 1);
   size_t n = 0;
   for (size_t k = 0; k < mask_.size(); ++k) {
@@ -153,7 +153,8 @@ double Refiner::MedianResidual() const {
   return errors.empty() ? -1.0 : std::sqrt(MedianInPlace(&errors));
 }
 
-// A noise level that is given is that of all.
+// Sets the noise level and the weights of the camera pairs. A given noise level holds for all
+// pairs.
 void Refiner::SetNoise() {
   noise_weights_.assign(mask_.size(), 1.0);
   // The floor keeps noise-free problems regular.
@@ -164,11 +165,11 @@ void Refiner::SetNoise() {
   summary_.noise_px = noise_px_;
 }
 
-// Weighs the matches by the noise of their camera pairs and returns that of all.
+// Sets the weights of the matches by the noise of their camera pairs. Returns the noise of all.
 double Refiner::EstimateNoise() {
   const double median = MedianResidual();
-  // Residuals of as many matches as parameters are zero whatever the noise is. With little
-  // redundancy the threshold says more of the noise than they do: it is meant to be three sigma.
+  // With as many matches as parameters the residuals are zero for any noise. With little redundancy
+  // the threshold, which is meant to be three sigma, is the better estimate.
   constexpr int kParameters = 6;
   constexpr int kMinRedundancy = 10;
   const int redundancy = num_inliers_ - kParameters;
@@ -198,7 +199,7 @@ Matrix6d Refiner::WithPrior(Matrix6d information, const Pose& pose) const {
   return information;
 }
 
-// Asked for the same motion and selection more than once.
+// Keeps the last result, since it is called more than once for the same motion and selection.
 double Refiner::ScaleSigma(const Pose& pose) const {
   ScaleQuestion& last = last_scale_;
   if (pose.R != last.pose.R || pose.t != last.pose.t || noise_px_ != last.noise_px ||
@@ -220,8 +221,8 @@ bool Refiner::ScaleIsFree(const Pose& pose) const {
   return ScaleSigma(pose) <= kScaleObservableRatio;
 }
 
-// At the false minima of intra-camera matches the scale looks well determined, so that their kind
-// decides and not the information there.
+// At the false minima of intra-camera matches the scale seems well determined. So the kind of the
+// matches decides, and not the information there.
 bool Refiner::SearchesScale(const Pose& pose) const {
   if (options_.scale != ScaleMode::kAuto || WeighsDistance(options_, prior_)) return false;
   const bool all_intra =
@@ -253,16 +254,17 @@ void Refiner::ChooseForms(const Pose& pose, bool scale_free, RotationForm* rotat
   }
 }
 
-// A distance of zero leaves no direction to refine: the start's |t| is kept. What the matches know
-// is the direction of the rig's own motion, whatever the start's |t| is.
+// Sets |t| of the body to the prior's distance. With a distance of zero there is no direction to
+// refine, so the start's |t| is kept. The direction of the rig's own motion stays, since the
+// matches determine it for any |t| of the start.
 void Refiner::TakeDistance(Pose* pose) const {
   if (!(prior_.distance.value_or(0.0) > 0)) return;
   *pose = WithBodyLength(*pose, RigCentre(matches_.rig()), *prior_.distance);
 }
 
-// Taking a match as exact hurts least with much parallax, since its rays then say most of l1, l2,
-// and with little noise: of the inliers of largest parallax below the median error the one whose
-// exactness changes the score of the start least. -1 if there is none.
+// The reference match of the depth forms, -1 if there is none. Its rays are taken as exact, so it
+// should have much parallax and little noise. Candidates are the inliers of largest parallax among
+// those with an error below the median. The one whose exact rays give the best score is taken.
 int Refiner::ChooseReference(const Pose& pose, RotationForm rotation,
                              TranslationForm translation) const {
   constexpr size_t kMaxCandidates = 16;
@@ -363,9 +365,9 @@ void Refiner::FactorsNearEpipoles(const Pose& pose, std::vector<double>* factors
   }
 }
 
-// These factors of the inliers and their weights by the noise of their camera pairs, fixed for a
-// round: as a function of the motion they would draw the epipoles to the matches. True if they
-// changed by more than a tenth.
+// Sets the weights of the inliers: these factors times the weights by the noise of the camera
+// pairs. They are fixed for a round. As a function of the motion they would pull the epipoles to
+// the matches. True if a weight changed by more than a tenth.
 bool Refiner::SetWeights(const Pose& pose) {
   const std::vector<double> previous = weights_;
   FactorsNearEpipoles(pose, &weights_);
@@ -394,8 +396,8 @@ bool Refiner::DescribeFit(const Pose& pose, InlierFit* fit) const {
   return true;
 }
 
-// A reference chosen at a poor start is a poor one: its rays, taken as exact, hold the motion
-// there.
+// True if another reference would be chosen at `pose`. A reference that was chosen at a poor start
+// is a poor one: its rays, taken as exact, hold the motion there.
 bool Refiner::ReferenceIsStale(const Pose& pose) const {
   if (!HasReference()) return false;
   RotationForm rotation;
@@ -443,7 +445,8 @@ void Refiner::FillUncertainty(const Pose& pose) {
   set_covariance(PriorIsExact() ? PriorBasis(pose, alignment_, scale_free_)
                                 : FullBasis(pose, scale_free_));
   summary_.parallax_px = ParallaxPercentilePx(matches_, mask_, pose);
-  // A noise level that is given is believed; an estimated one may be a fit to the noise.
+  // A given noise level is trusted. An estimated one may be too small, because of a fit to the
+  // noise.
   summary_.parallax_limit_px =
       kParallaxSigmas * (options_.noise_px.has_value()
                              ? noise_px_
@@ -468,7 +471,7 @@ void Refiner::FillUncertainty(const Pose& pose) {
     summary_.rig_translation_observable = false;
     summary_.translation_observable = false;
   }
-  // With kAuto the scale was left free because it is observable: one decision, not two.
+  // With kAuto the scale was left free because it is observable, so that decision is used again.
   summary_.scale_observable =
       summary_.translation_observable &&
       (options_.scale == ScaleMode::kAuto ? scale_free_
@@ -520,7 +523,7 @@ RefineSummary Refiner::Run(Pose* pose) {
   summary_.num_iterations = 0;
   Pose result = *pose;
   ResolveSign(sign_subset_, options_.threshold_px, &result);
-  // Matches that hardly determine |t| would not bring it there from afar.
+  // Before the fit: matches that hardly determine |t| would not move it far enough.
   if (UsesBodyLength(options_, prior_)) TakeDistance(&result);
   SelectInliers(result);
   SetNoise();
@@ -534,7 +537,7 @@ RefineSummary Refiner::Run(Pose* pose) {
       SearchScale(matches_, options_.threshold_px, noise_px_, &result)) {
     done = Iterate(&result);
   }
-  // A t with another sign or scale is not a minimum: refine again from there.
+  // With another sign or scale, t is not at a minimum: refine again from there.
   if (go_on()) {
     const Eigen::Vector3d t = result.t;
     const bool possible = ResolveSign(sign_subset_, options_.threshold_px, &result);
@@ -543,13 +546,13 @@ RefineSummary Refiner::Run(Pose* pose) {
     }
     if (result.t != t) done = Iterate(&result);
   }
-  // Are there inliers that fit by chance?
+  // At the minimum, exclude inliers that fit by chance.
   if (go_on()) {
     excludes_chance_ = true;
     selected_at_.reset();
     if (SelectInliers(result)) done = Iterate(&result);
   }
-  // What is said of the scale must be said of the final motion.
+  // Whether the scale is free must be decided at the final motion.
   if (go_on() && ScaleIsFree(result) != scale_free_) done = Iterate(&result);
   const bool stopped = done && stop_.reason() != StopReason::kNone;
   if (stopped) SelectInliers(result);
@@ -575,20 +578,11 @@ RefineSummary Refiner::Run(Pose* pose) {
 
 }  // namespace
 
-bool RefineOptions::IsValid(std::string* error) const {
-  const bool prior_exact = form == RefineForm::kPrior || form == RefineForm::kPriorDepths;
+bool RefineSettings::IsValid(std::string* error) const {
   if (std::string(RefineFormName(form)) == "unknown" ||
       std::string(ResidualName(residual)) == "unknown" ||
       std::string(LossName(loss)) == "unknown") {
     *error = "form, residual or loss is none of its enumeration";
-    return false;
-  }
-  if (prior_exact && prior_kind == PriorKind::kNone) {
-    *error = std::string("the form '") + RefineFormName(form) + "' needs a prior_kind";
-    return false;
-  }
-  if (!(threshold_px >= 0) || !std::isfinite(threshold_px)) {
-    *error = "threshold_px must be positive and finite, or 0 for auto";
     return false;
   }
   if (!(loss_scale_sigmas > 0) || !std::isfinite(loss_scale_sigmas)) {
@@ -603,11 +597,25 @@ bool RefineOptions::IsValid(std::string* error) const {
     *error = "noise_px must be positive and finite";
     return false;
   }
+  return IsValidTimeLimit(time_limit, error);
+}
+
+bool RefineOptions::IsValid(std::string* error) const {
+  if (!RefineSettings::IsValid(error)) return false;
+  const bool prior_exact = form == RefineForm::kPrior || form == RefineForm::kPriorDepths;
+  if (prior_exact && prior_kind == PriorKind::kNone) {
+    *error = std::string("the form '") + RefineFormName(form) + "' needs a prior_kind";
+    return false;
+  }
+  if (!(threshold_px >= 0) || !std::isfinite(threshold_px)) {
+    *error = "threshold_px must be positive and finite, or 0 for auto";
+    return false;
+  }
   if (!(num_tries >= 1.0) || !std::isfinite(num_tries)) {
     *error = "num_tries must be at least 1 and finite";
     return false;
   }
-  return IsValidTimeLimit(time_limit, error);
+  return true;
 }
 
 Eigen::Vector3d FittedPoint(const RefineOptions& options, const MotionPrior& prior,
@@ -622,7 +630,7 @@ RefineSummary RefineAbout(const RefineOptions& given, const GroupedMatches& matc
   // The rig's centre in the frame of `matches`, or the body's origin.
   const Eigen::Vector3d step =
       UsesBodyLength(options, prior) ? Eigen::Vector3d(-origin) : RigCentre(matches.rig());
-  // Of a rig that is centred already only rounding is left.
+  // For a rig that is already centred, the step is only rounding.
   constexpr double kRounding = 1e-12;
   double size = 0.0;
   for (const RigCamera& camera : matches.rig().cameras) size = std::max(size, camera.s.norm());

@@ -1,5 +1,8 @@
-// Refinement of a motion on matches: nonlinear least squares with Ceres on epipolar residuals, with
-// re-selection of inliers, the sign of t by cheirality, and the uncertainty of the result.
+// Refinement of a motion: nonlinear least squares on the epipolar errors of the inliers.
+//
+// In turns it minimizes the errors and selects the inliers again. The sign of t comes from
+// cheirality (points lie in front of their cameras). The summary has the covariance and what is
+// observable. Motions are f2_from_f1, X_2 = R X_1 + t, in radians and metres.
 #ifndef RIGEL_REFINE_REFINE_H_
 #define RIGEL_REFINE_REFINE_H_
 
@@ -26,13 +29,13 @@ namespace rigel {
 
 class GroupedMatches;
 
-// Which parameters are free; every form uses the exact rotation.
+// Which parameters are free. Every form uses the exact rotation.
 enum class RefineForm {
-  kFull,         // rotation (3), translation (3; 2 on the sphere where scale is not observable)
-  kPrior,        // the prior is exact: its angle, and t (planar: t in the plane)
-  kDepths,       // rotation (3), l1 and l2 of a reference match, which is exact too (the paper)
-  kPriorDepths,  // the angle, l1 and l2 (planar: one depth less): the paper's model in full
-  kBundle,       // as kFull, and each inlier's point: reprojection errors, whatever `residual` says
+  kFull,         // rotation (3), translation (3; 2 on the sphere if scale is not observable)
+  kPrior,        // the prior is exact: the angle about its direction, and t (planar: in the plane)
+  kDepths,       // rotation (3), depths l1, l2 of a reference match, which is exact (eqs. a2, a5)
+  kPriorDepths,  // the angle, l1 and l2 (planar: one depth less): the paper's model
+  kBundle,       // as kFull, and the point of each inlier; reprojection errors, not `residual`
 };
 
 const char* RefineFormName(RefineForm form);  // "full", "prior", ..., "bundle"
@@ -41,39 +44,38 @@ const char* ResidualName(ResidualKind kind);  // "sampson", "angular", "algebrai
 bool ParseResidual(std::string_view name, ResidualKind* kind);
 
 enum class ScaleMode {
-  kAuto,  // free where the matches determine it (kScaleObservableRatio), else kept as it was found
+  kAuto,  // free if the matches determine it (kScaleObservableRatio), else held as it was found
   kFree,
-  kFixed,  // |t| is the prior's distance where it has one, else as at the start
+  kFixed,  // |t| is the prior's distance if it has one, else as at the start
 };
 
-// Between Gaussian noise and outliers anywhere in an image, residuals beyond this many sigma are
-// likelier outliers. A gate at 3 sigma costs 2 to 3 percent of the accuracy.
+// Residuals beyond this many sigma are more likely outliers (uniform in the image) than inliers
+// with Gaussian noise. A gate at 3 sigma costs 2 to 3 percent of the accuracy.
 inline constexpr double kGateSigmas = 3.75;
 
-// What the least squares run on. Both have the same minimum.
+// The least-squares engine. Both have the same minimum.
 enum class RefineEngine {
-  kAuto,   // the small engine (small_engine.h) where it can: Sampson residuals, not kBundle
+  kAuto,   // the small engine (small_engine.h) for Sampson residuals and all forms but kBundle
   kCeres,  // a ceres::Problem
 };
 
-// Where a refinement is.
+// The state of a refinement that runs.
 struct RefineProgress {
   int round = 0;      // from 1
-  int iteration = 0;  // of the round's least squares, from 0
-  double cost = 0.0;  // 1/2 sum rho(r^2) by now
+  int iteration = 0;  // within the round, from 0
+  double cost = 0.0;  // 1/2 sum rho(r^2)
 };
 
-struct RefineOptions {
+// The options that a user sets for Refine() and for EstimateMotion().
+struct RefineSettings {
   RefineForm form = RefineForm::kFull;
   ResidualKind residual = ResidualKind::kSampson;
-  // Which part of the prior the forms kPrior and kPriorDepths take as exact, and which part
-  // use_prior weighs.
-  PriorKind prior_kind = PriorKind::kNone;
-  // Adds the prior as residuals weighted by its sigma, with its distance if it has one; a part
-  // without a sigma stays out.
+  // Adds the prior as residuals, and its distance if it has one, each divided by its sigma. A part
+  // without a sigma is left out.
   bool use_prior = false;
 
-  // Matches near an epipole count less (EpipoleWeights), in the fit and in the covariance.
+  // Gives matches near an epipole a smaller weight (EpipoleWeights), in the fit and in the
+  // covariance.
   bool epipole_weights = true;
 
   LossKind loss = LossKind::kCauchy;
@@ -82,25 +84,39 @@ struct RefineOptions {
 
   RefineEngine engine = RefineEngine::kAuto;
 
-  // > 0; matches with a larger Sampson error are left out. Where the noise is given, nothing below
-  // kGateSigmas of it is. kAutoThresholdPx: as of RansacOptions.
-  double threshold_px = kAutoThresholdPx;
   int max_rounds = 5;           // >= 1; selections of inliers
-  int max_num_iterations = 50;  // >= 0, a round
+  int max_num_iterations = 50;  // >= 0, in each round
   ScaleMode scale = ScaleMode::kAuto;
-  // 1-sigma image noise where it is known; else estimated: 1.4826 times the median |residual| of
-  // the n inliers, times sqrt(n / (n - 6)); at least a third of the threshold below 16 inliers.
+  // 1-sigma image noise, pixels, if it is known. Else it is estimated from the n inliers: 1.4826
+  // times the median |residual|, times sqrt(n / (n - 6)). Below 16 inliers it is at least a third
+  // of the threshold.
   std::optional<double> noise_px;
-  // >= 1; so many motions were tried before the start was found, which the number of matches that
-  // agree must make up for (RefineSummary::exceeds_chance).
-  double num_tries = 1e4;
 
   // Seconds from the call on, >= 0, and a flag that any thread may set: either ends the refinement
   // with Termination::kStopped after the iteration in progress.
   std::optional<double> time_limit;
   const std::atomic<bool>* cancel = nullptr;  // null, or outlives the call
-  // Called after each iteration, where it is not empty, by the thread that called Refine().
+  // Called after each iteration, if not empty, by the thread that called Refine().
   std::function<void(const RefineProgress&)> progress;
+
+  // False with a message in `error` (not null) if a member is out of its range.
+  bool IsValid(std::string* error) const;
+};
+
+// All options of Refine(). The members added here depend on the search that found the start:
+// EstimateMotion() sets them from its solver and RANSAC.
+struct RefineOptions : RefineSettings {
+  RefineOptions() = default;
+  explicit RefineOptions(const RefineSettings& settings) : RefineSettings(settings) {}
+
+  // The part of the prior that kPrior and kPriorDepths take as exact and that use_prior weights.
+  PriorKind prior_kind = PriorKind::kNone;
+  // Pixels, > 0; matches with a larger Sampson error are left out. If the noise is given, the limit
+  // is at least kGateSigmas of it. kAutoThresholdPx: as in RansacOptions.
+  double threshold_px = kAutoThresholdPx;
+  // Number of motions that were tried before the start was found, >= 1. The more were tried, the
+  // more matches must agree (RefineSummary::exceeds_chance).
+  double num_tries = 1e4;
 
   bool IsValid(std::string* error) const;
 };
@@ -111,8 +127,8 @@ enum class Termination {
   kIterationLimit,  // usable, not converged
   kDegenerate,      // the matches do not determine the free parameters; pose unchanged
   kFailure,         // wrong input; pose unchanged
-  // By the time limit or the flag: pose is the best by then. It is no minimum, so that there is no
-  // covariance, and nothing is called observable.
+  // By the time limit or the flag: pose is the best by then. It is not a minimum, so there is no
+  // covariance, and nothing counts as observable.
   kStopped,
 };
 
@@ -122,10 +138,10 @@ const char* TerminationName(Termination termination);
 struct CameraPairFit {
   int camera1 = 0;
   int camera2 = 0;
-  int rows = 0;
+  int rows = 0;  // matches of the pair
   int inliers = 0;
-  // Unit direction of R s_i + t - s_j in the body frame at time 2: what such matches alone know of
-  // the translation. Zero without a baseline.
+  // Unit direction of the baseline R s_i + t - s_j in the body frame at time 2. Matches of this
+  // pair alone determine no more of the translation. Zero without a baseline.
   std::array<double, 3> baseline = {0, 0, 0};
 };
 
@@ -144,56 +160,58 @@ struct RefineSummary {
   double median_residual_px = -1.0;         // median |Sampson error| of the inliers
   double noise_px = -1.0;                   // given or estimated
 
-  // Covariance of (rotation, translation) for R <- Exp(d) R, t <- t + e over the parameters that
-  // were free: of rank 5 where |t| was held, 2 to 4 where the prior was exact. Where the
-  // direction of t is not observable, of all six, so that the rotation's part covers what the
-  // translation may be. The depth forms state it without the error of their reference. Empty if
-  // not determined.
+  // Covariance of the perturbation (d, e) of R <- Exp(d) R, t <- t + e: rotation (radians) first,
+  // then translation (metres). It covers the parameters that were free: rank 5 if |t| was held, 2
+  // to 4 if the prior was exact. If the direction of t is not observable it covers all six, so the
+  // rotation's part allows for any translation. The depth forms take their reference as exact here.
+  // Empty if not determined.
   std::optional<Matrix6d> covariance;
   std::string weakest_direction;  // of the covariance, in words (WeakestDirection)
   double rotation_sigma = -1.0;   // radians; -1 if there is no covariance
   double direction_sigma = -1.0;  // of t, radians
-  // FittedPoint(). Where its length was held, the information lacks what is along b.
+  // FittedPoint(), the point of the body whose motion b was fitted. If |b| was held, there is no
+  // information along b.
   Eigen::Vector3d fitted_point = Eigen::Vector3d::Zero();
-  double rig_direction_sigma = -1.0;   // of b, radians: small where a long lever spoils that of t
+  double rig_direction_sigma = -1.0;   // of b, radians; smaller than that of t with a far origin
   double relative_scale_sigma = -1.0;  // of |b|, a fraction; infinite if not determined
   double parallax_px = -1.0;           // see ParallaxPercentilePx()
   double parallax_limit_px = -1.0;     // what it has to exceed for translation_observable
   bool scale_free = false;             // |t| was refined, not held
   bool exceeds_chance = false;         // more matches agree than random ones would
   bool rotation_observable = false;
-  bool translation_observable = false;      // the direction of t means something
-  bool rig_translation_observable = false;  // that of b does
+  bool translation_observable = false;      // the direction of t is observable
+  bool rig_translation_observable = false;  // the direction of b is
   bool scale_observable = false;
 
   bool IsSolutionUsable() const {
     return termination == Termination::kConverged || termination == Termination::kIterationLimit ||
            termination == Termination::kStopped;
   }
-  // The direction of the rig's own motion is known: enough for an edge or a step.
+  // The direction of the rig's own motion is known, which an edge or a step of a trajectory needs.
   bool RigDirectionKnown() const { return translation_observable || rig_translation_observable; }
   std::string BriefReport() const;
-  // The one camera pair that all inliers are of, if that is of two cameras: it fixes the motion up
-  // to the length of its baseline, whatever |t| is. Null otherwise.
+  // If all inliers are of one pair of different cameras: that pair, else null. Such matches
+  // determine the motion except the length of the pair's baseline.
   const CameraPairFit* OnlyCameraPair() const;
-  // One clause on what is and what is not observable, and by how much.
+  // One clause that says what is observable and what is not, with the standard deviations.
   std::string ObservabilityReport() const;
 };
 static_assert(kSameLayoutEverywhere<RefineSummary>, "no member of RefineSummary may be aligned");
 
-// Refines `pose`, which must be near the motion. Never throws, exits or logs; on kDegenerate and
-// kFailure `pose` is unchanged. Thread-safe; deterministic unless stopped.
+// Refines `pose` (f2_from_f1 of the body, metres), which must be near the true motion. `pose` must
+// not be null. Never throws, exits or logs. On kDegenerate and kFailure `pose` is unchanged and the
+// summary has a message. Thread-safe; deterministic unless stopped.
 RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,
                      const MotionPrior& prior, Pose* pose);
 RefineSummary Refine(const RefineOptions& options, const Rig& rig,
                      const std::vector<Match>& matches, const MotionPrior& prior, Pose* pose);
 
-// The point of the body whose motion b a refinement fits (rig_centre.h): the rig's centre, or the
-// body's origin where the options hold |t| of the body or weigh the prior's distance.
+// The point of the body whose motion b a refinement fits (rig_centre.h), in the body frame, metres:
+// the rig's centre, or the body's origin if the options hold |t| or weight the prior's distance.
 Eigen::Vector3d FittedPoint(const RefineOptions& options, const MotionPrior& prior, const Rig& rig);
 
-// The same where the origin of the body frame of `matches` is `origin` of the body's: `pose` and
-// the summary are of the body. With `origin` the rig's centre nothing is copied.
+// Refine() for `matches` whose body frame has its origin at the point `origin` of the body. `pose`
+// and the summary are of the body. If `origin` is the rig's centre, the matches are not copied.
 RefineSummary RefineAbout(const RefineOptions& options, const GroupedMatches& matches,
                           const Eigen::Vector3d& origin, const MotionPrior& prior, Pose* pose);
 

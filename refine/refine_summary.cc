@@ -1,4 +1,4 @@
-// Names, and what a summary says of itself.
+// Names of the enumerations of refine.h, and the reports of a RefineSummary.
 #include <cmath>
 #include <cstdio>
 
@@ -84,7 +84,7 @@ std::string RefineSummary::ObservabilityReport() const {
     return text;
   }
   if (!translation_observable) {
-    // The share from which on a standard deviation says that nothing is known.
+    // Relative standard deviation of |t| from which on |t| counts as not determined at all.
     constexpr double kNothingKnown = 10.0;
     const CameraPairFit* only = OnlyCameraPair();
     if (only != nullptr) {

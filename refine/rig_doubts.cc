@@ -12,7 +12,7 @@
 namespace rigel {
 namespace {
 
-// The smaller camera first: matches between two cameras in either order.
+// Two cameras, the smaller index first: matches in either order of time.
 using Cameras = std::pair<int, int>;
 struct Fit {
   int rows = 0;
@@ -63,7 +63,7 @@ std::vector<int> FrozenCameras(const FramePair& pair) {
   return frozen;
 }
 
-// How many matches fit the better of the two swaps; nothing if neither is better by far.
+// Number of matches that fit with the better of the two swaps; nothing if neither is far better.
 std::optional<int> InliersIfSwapped(const FramePair& pair, int num_inliers, const Cameras& cameras,
                                     const std::function<int(const FramePair&)>& inliers_with) {
   constexpr double kFewerOutliers = 0.75;
@@ -137,7 +137,7 @@ std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, ScaleMode scale, bool
       to_swap.push_back(cameras);
       continue;
     }
-    // Two that no match connects.
+    // Also two cameras that no match connects.
     for (const int other : few_by_themselves) {
       if (fits.count({other, cameras.first}) == 0) to_swap.push_back({other, cameras.first});
     }
@@ -148,7 +148,7 @@ std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, ScaleMode scale, bool
                                  refine.camera_pairs.size() > 1 && inter_inliers >= kMinDoubtRows &&
                                  10 * inter_inliers >= refine.num_inliers;
   if (to_swap.empty() && length_is_missing && frozen.empty()) to_swap.push_back(*most_rows);
-  // One pair of cameras that is swapped makes others fit badly: enough to look at three.
+  // One swapped pair makes matches of other pairs fit badly too, so three pairs are enough to try.
   constexpr size_t kMaxSwaps = 3;
   for (size_t k = 0; k < std::min(to_swap.size(), kMaxSwaps); ++k) {
     const auto inliers = InliersIfSwapped(pair, refine.num_inliers, to_swap[k], inliers_with);

@@ -1,5 +1,5 @@
-// What contradicts the rig: words for a person to look into a calibration. Nothing here changes an
-// estimate.
+// Finds matches that contradict the rig's calibration, and describes them in messages for the user.
+// They do not change an estimate.
 #ifndef RIGEL_REFINE_RIG_DOUBTS_H_
 #define RIGEL_REFINE_RIG_DOUBTS_H_
 
@@ -18,7 +18,7 @@ enum class RigDoubtKind {
   kSwapped,  // more would fit if the two were swapped
 };
 
-// What in a pair contradicts its rig.
+// One contradiction between the matches of a frame pair and its rig.
 struct RigDoubt {
   RigDoubtKind kind = RigDoubtKind::kFewFit;
   int camera1 = 0;  // at most camera2
@@ -26,26 +26,25 @@ struct RigDoubt {
   std::string message;  // "cameras 0-1: 12 of 760 fit; are they swapped, ..."
 };
 
-// Camera pairs with fewer rows tell nothing.
+// Camera pairs with fewer matches are not judged.
 inline constexpr int kMinDoubtRows = 20;
-// The share of a camera pair's matches that fit is far below the largest one's if it is less than
-// this part of it, ...
+// Few matches of a camera pair fit if their share is below this part of the largest share, ...
 inline constexpr double kFewFit = 0.25;
-// ... and that one is at least so large.
+// ... and the largest share is at least this.
 inline constexpr double kMostFit = 0.4;
 
-// Of a refinement of the pair's matches with this scale, in this order:
-//   - a frozen camera: nearly all of its intra-camera matches stay where they are to within
-//     kMinMatchNoisePx (times PixelUnit()), and half of those of another camera move by ten times
-//     that;
-//   - the matches between two cameras, or of one, of which far fewer fit than of the others;
-//   - two cameras with which the matches fit better when they are swapped: their poses, or their
-//     poses and intrinsics. Tried where the matches between them do not fit, or where they fit and
-//     do not determine |t| either, although the rig moves: a mirrored baseline is explained away by
-//     a motion so long that no baseline matters.
-// Where the prior is doubted it explains what fits badly, and that is not told.
-// `inliers_with` estimates the motion of a pair anew and returns how many matches fit, 0 if there
-// is no motion; it need not look long: kMaxSwapIterations of RANSAC.
+// Finds the contradictions after a refinement (`refine`) with this scale mode, in this order:
+//   - A frozen camera: nearly all of its intra-camera matches move by less than kMinMatchNoisePx
+//     (times PixelUnit()), and half of those of another camera move by more than ten times that.
+//   - Matches between two cameras, or of one camera, of which far fewer fit than of others.
+//   - Two cameras with which more matches fit if they are swapped: their poses, or their poses and
+//     intrinsics. This is tried if the matches between them do not fit. It is also tried if they
+//     fit and |t| is still not determined although the rig moves. A motion so long that no baseline
+//     matters then hides a baseline of the wrong sign.
+// If `prior_is_doubted`, the prior may be the reason that few matches fit. That is then not
+// reported.
+// `inliers_with` estimates the motion of a pair again and returns the number of inliers, 0 if there
+// is no motion. kMaxSwapIterations of RANSAC are enough for it.
 inline constexpr int kMaxSwapIterations = 500;
 std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, ScaleMode scale, bool prior_is_doubted,
                                     const RefineSummary& refine,

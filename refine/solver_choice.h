@@ -1,4 +1,4 @@
-// Which minimal solver suits a frame pair: the choice behind the solver "auto".
+// Chooses the minimal solvers for a frame pair: the choice behind the solver "auto".
 #ifndef RIGEL_REFINE_SOLVER_CHOICE_H_
 #define RIGEL_REFINE_SOLVER_CHOICE_H_
 
@@ -13,14 +13,16 @@ namespace rigel {
 
 inline constexpr char kAutoSolver[] = "auto";
 
-// Whether it is that or a name of the catalogue, and what to expect, for messages.
+// True for "auto" and the names of the catalogue.
 bool IsSolverName(std::string_view name);
+// These names, separated by commas, for messages.
 std::string SolverNamesWithAuto();
 
-// The solvers that the priors allow, the most constrained first: 3pt (planar motion), 4pt (known
-// vertical), 4pt-axis (known axis), then those that need none: 5pt+1, which wants five matches of
-// one camera pair, 6pt-ventura, first order in the rotation, and 17pt-li. Exact ones where there
-// is a choice: they cost little more and hold in turns (docs/solver_choice.md has the sweep).
+// The solvers that the prior allows, the most constrained first: 3pt (planar motion), 4pt (known
+// vertical), 4pt-axis (known axis). Then those that need no prior: 5pt+1, which needs five matches
+// of one camera pair, 6pt-ventura, which is of first order in the rotation, and 17pt-li. The exact
+// solvers are taken, not the first-order ones: they take little more time and are as good in turns
+// (measured: docs/solver_choice.md).
 std::vector<const SolverInfo*> SuggestSolvers(const MotionPrior& prior);
 
 // The first of them.

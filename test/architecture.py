@@ -4,7 +4,7 @@
     test/architecture.py [SOURCE_DIRECTORY]
 
 Reads the #include lines of the library and the programs. Fails, with one line for each finding, on
-  - an include that the table below does not allow, a folder that is not in it, and a cycle between rooms;
+  - an include that the table below does not allow, a folder that is not in it, and a cycle between modules;
   - an include that names no file, or that leaves out "rigel/" and so hides from this table;
   - an installed header that is neither public nor included by one that is, and on one of these that is not installed.
 The public headers are those of the tables of docs/api.md; the installed ones are listed in cmake/RigelHeaders.cmake.
@@ -15,7 +15,7 @@ import os
 import re
 import sys
 
-# Each room with the rooms it may use, all of which stand above it: arrows run down, that is, up in this table. Tests
+# Each module with the modules it may use, all of which stand above it. Tests
 # see all.
 MAY_USE = {
     "core": "",
@@ -50,7 +50,7 @@ def read(root, path):
 
 
 def source_files(root):
-  for layer in sorted({room.split("/")[0] for room in MAY_USE}):
+  for layer in sorted({module.split("/")[0] for module in MAY_USE}):
     for folder, folders, names in os.walk(os.path.join(root, layer)):
       folders.sort()
       for name in sorted(names):
@@ -60,43 +60,43 @@ def source_files(root):
 
 def check_table(findings):
   above = set()
-  for room, uses in MAY_USE.items():
+  for module, uses in MAY_USE.items():
     for used in uses.split():
       if used not in above:
-        findings.append(f"the table lets {room} use {used}, which does not stand above it")
-    above.add(room)
+        findings.append(f"the table lets {module} use {used}, which does not stand above it")
+    above.add(module)
 
 
 def find_cycle(arrows):
-  """Rooms that use each other in turn, the first again at the end; empty if there are none."""
+  """Modules that use each other in turn, the first again at the end; empty if there are none."""
   done = set()
 
-  def visit(room, path):
-    if room in path:
-      return path[path.index(room):] + [room]
-    if room in done:
+  def visit(module, path):
+    if module in path:
+      return path[path.index(module):] + [module]
+    if module in done:
       return []
-    for used in sorted(arrows.get(room, ())):
-      cycle = visit(used, path + [room])
+    for used in sorted(arrows.get(module, ())):
+      cycle = visit(used, path + [module])
       if cycle:
         return cycle
-    done.add(room)
+    done.add(module)
     return []
 
-  for room in sorted(arrows):
-    cycle = visit(room, [])
+  for module in sorted(arrows):
+    cycle = visit(module, [])
     if cycle:
       return cycle
   return []
 
 
 def check_includes(root, findings):
-  """The includes of each file, and the arrows between rooms."""
+  """The includes of each file, and the arrows between modules."""
   includes, arrows = {}, {}
   for path in source_files(root):
-    room = os.path.dirname(path)
-    if room not in MAY_USE:
-      findings.append(f"{path}: the folder is no room of the table")
+    module = os.path.dirname(path)
+    if module not in MAY_USE:
+      findings.append(f"{path}: the folder is no module of the table")
       continue
     includes[path] = []
     for number, line in enumerate(read(root, path).split("\n"), 1):
@@ -112,15 +112,15 @@ def check_includes(root, findings):
         findings.append(f"{where}: there is no {used}")
         continue
       includes[path].append(used)
-      used_room = os.path.dirname(used)
-      if used_room == room:
+      used_module = os.path.dirname(used)
+      if used_module == module:
         continue
-      arrows.setdefault(room, set()).add(used_room)
-      if used_room not in MAY_USE[room].split():
-        findings.append(f"{where}: {room} may not use {used_room} ({used})")
+      arrows.setdefault(module, set()).add(used_module)
+      if used_module not in MAY_USE[module].split():
+        findings.append(f"{where}: {module} may not use {used_module} ({used})")
   cycle = find_cycle(arrows)
   if cycle:
-    findings.append("a cycle of rooms: " + " -> ".join(cycle))
+    findings.append("a cycle of modules: " + " -> ".join(cycle))
   return includes, arrows
 
 
@@ -163,7 +163,7 @@ def main():
   public, installed = check_headers(root, includes, findings)
   for finding in findings:
     print(finding)
-  print(f"{len(includes)} files, {len(MAY_USE)} rooms, {sum(map(len, arrows.values()))} arrows; "
+  print(f"{len(includes)} files, {len(MAY_USE)} modules, {sum(map(len, arrows.values()))} arrows; "
         f"{len(public)} public headers, {len(installed)} installed")
   sys.exit(1 if findings else 0)
 

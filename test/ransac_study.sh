@@ -25,8 +25,8 @@ table() {
   echo
   echo "# RANSAC and refinement together"
   echo
-  echo "One thread, $pairs pairs a row, random motion (planar for \`3pt\`), 1 degree, 0.5 px, exact priors. Times are the least of"
-  echo "three runs of a pair. The columns:"
+  echo "One thread, $pairs pairs for each row, random motion (planar for \`3pt\`), 1 degree, 0.5 px, exact priors. Times are the"
+  echo "shortest of three runs of a pair. The columns:"
   echo
   echo "- success: the share of pairs whose rotation error is within three times the pair's own Cramer-Rao bound;"
   echo "- bound: RMS error over RMS bound of the pairs that succeed;"

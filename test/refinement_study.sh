@@ -43,9 +43,9 @@ field() {
   echo
   echo "## Efficiency"
   echo
-  echo "RMS error over RMS bound, rotation and direction of translation; $pairs pairs a row, 0.5 px, exact vertical"
-  echo "(\`--prior=truth\`), solver \`4pt\`. Intra-camera rows hold |t| (\`--fix_translation_norm\`), as their bound of 5 degrees"
-  echo "of freedom does. NEES: mean over its degrees of freedom, with the 99 percent interval of right covariances."
+  echo "RMS error over RMS bound, rotation and direction of translation. Each row has $pairs pairs, 0.5 px, exact"
+  echo "vertical (\`--prior=truth\`), solver \`4pt\`. Intra-camera rows hold |t| (\`--fix_translation_norm\`), as their bound of 5"
+  echo "degrees of freedom does. NEES: mean over its degrees of freedom, with the 99 percent interval of right covariances."
   echo
   echo "| motion | matches | cameras | turn | seed | full | bundle | prior | depths | prior-depths | algebraic | NEES of full | NEES, noise estimated |"
   echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"

@@ -20,24 +20,28 @@ solvers=3pt,4pt,4pt-axis,5pt+1,auto
   echo "\`--solver=auto\` begins with the most constrained solver that the priors allow: \`3pt\` (planar motion), \`4pt\` (known"
   echo "vertical), \`4pt-axis\` (known axis). It runs 50 iterations. If its motion is doubtful, others follow:"
   echo
-  echo "1. The solvers without a prior run 100 iterations: \`5pt+1\`, and \`6pt-ventura\` and \`17pt-li\` where most of the matches"
-  echo "   are of camera pairs with fewer than five matches. The other constrained solvers come after them."
-  echo "2. The first solver whose motion is not doubtful goes on alone."
-  echo "3. If there is none, the best constrained solver and those without a prior take turns. They stop when the one that leads"
-  echo "   has drawn a sample of inliers with the required confidence."
+  echo "1. The solvers without a prior run 100 iterations each: first \`5pt+1\`. If most matches are of camera pairs with fewer"
+  echo "   than five matches, \`6pt-ventura\` and \`17pt-li\` run too. The other constrained solvers come after them."
+  echo "2. The first solver whose motion is not doubtful continues alone."
+  echo "3. If there is none, the best constrained solver and those without a prior take turns. They stop when the best one has"
+  echo "   drawn a sample of inliers with the required confidence."
   echo
-  echo "All solvers share one budget, \`--max_iterations\`. A motion is doubtful for one of three reasons: fewer than half of the"
-  echo "matches agree with it, 10 percent more agree at twice the threshold, or it turned away from the prior by more than 2"
-  echo "degrees. \`auto\` in the JSON of rigel_estimate has what was tried and why."
+  echo "All solvers share one budget, \`--max_iterations\`. A motion is doubtful for one of three reasons:"
+  echo
+  echo "- fewer than half of the matches agree with it;"
+  echo "- at twice the threshold, 10 percent more matches agree;"
+  echo "- it deviates from the prior by more than 2 degrees."
+  echo
+  echo "\`auto\` in the JSON of rigel_estimate says what was tried and why."
   echo
   echo "The refinement does not hold the prior, so a prior only saves time. With many outliers a smaller sample needs fewer"
   echo "iterations. A wrong prior costs the time of the first 50 iterations. But a prior that is weighted in the refinement"
   echo "(\`--use_prior_in_refine\`) must be right."
   echo
-  echo "$pairs pairs a row, 300 intra-camera matches, 50 percent outliers, 0.5 px. \`planar\` is motion in the plane. \`random\` has"
-  echo "vertical motion, which contradicts the prior of \`3pt\`. Noise is the error of the prior, about a random axis"
-  echo "(\`--prior=body --prior_noise_deg\`). A cell holds the median of the raw and of the refined rotation error, in degrees,"
-  echo "and the median time in ms."
+  echo "$pairs pairs for each row, 300 intra-camera matches, 50 percent outliers, 0.5 px. \`planar\` is motion in the plane."
+  echo "\`random\` has vertical motion, which contradicts the prior of \`3pt\`. Noise is the error of the prior, about a random axis"
+  echo "(\`--prior=body --prior_noise_deg\`). A cell has the medians of the raw and of the refined rotation error, in degrees, and"
+  echo "the median time in ms."
   echo
   echo "| motion | turn | noise | 3pt | 4pt | 4pt-axis | 5pt+1 | auto |"
   echo "| --- | --- | --- | --- | --- | --- | --- | --- |"
@@ -65,8 +69,9 @@ solvers=3pt,4pt,4pt-axis,5pt+1,auto
   echo "two forward cameras (\`stereo\`) or a ring of 4 or 8. It turns about the body's down, where the prior is right, or about a"
   echo "random axis, where it is wrong.${RIGEL_REAL_DATA:+ euroc_loop is a real drone that turns by 26 degrees.}"
   echo
-  echo "A cell holds p50 / p90 over the pairs: the time of a pair over that of \`5pt+1\`, times in ms, and refined rotation errors"
-  echo "in degrees. A time is the least of 9 runs, which alternate between the two (\`test/solver_choice_times.py\`)."
+  echo "A cell has the median / 90th percentile over the pairs: of the time of a pair over that of \`5pt+1\`, of the times in ms,"
+  echo "and of the refined rotation errors in degrees. A time is the shortest of 9 runs, which alternate between the two solvers"
+  echo "(\`test/solver_choice_times.py\`)."
   echo
   echo "| rig, turn | pairs | time over 5pt+1's | auto, ms | 5pt+1, ms | auto, deg | 5pt+1, deg |"
   echo "| --- | --- | --- | --- | --- | --- | --- |"

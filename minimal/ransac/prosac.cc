@@ -8,7 +8,7 @@
 namespace rigel {
 namespace {
 
-// The first samples are not all of the same few matches.
+// Matches of the first pool: enough that the first samples differ.
 constexpr int kFirstPool = 20;
 
 }  // namespace
@@ -59,7 +59,7 @@ ProsacSampler::ProsacSampler(const GroupedMatches& matches, SampleKind kind, int
   Grow();
 }
 
-// Sets the sampler to the pool, taking in more matches while they allow no sample.
+// Sets the sampler to the pool. Adds matches to the pool until it allows a sample.
 void ProsacSampler::Grow() {
   for (;;) {
     int begin = 0;

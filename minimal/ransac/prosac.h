@@ -1,9 +1,9 @@
-// PROSAC: samples from the matches of best score first, from all of them in the end.
+// PROSAC: draws samples from the matches of best score first, and in the end from all.
 //
-// Chum and Matas 2005. Draw number t comes from the best n(t) matches, where n grows such that
-// after as many draws as plain RANSAC would make, every n has had its share of them. Unlike in the
-// paper the n-th match need not be in the sample, and RANSAC stops by its own rule. A score that is
-// NaN counts as the worst.
+// Source: Chum and Matas, "Matching with PROSAC", CVPR 2005. Sample number t is drawn from the best
+// n(t) matches. n grows with t, such that after `total_draws` samples it is the number of all
+// matches. Two differences from the paper: the n-th match need not be in the sample, and RANSAC
+// decides when to stop. A score that is NaN counts as the worst.
 #ifndef RIGEL_MINIMAL_RANSAC_PROSAC_H_
 #define RIGEL_MINIMAL_RANSAC_PROSAC_H_
 
@@ -17,17 +17,17 @@ namespace rigel {
 
 class ProsacSampler {
  public:
-  // `total_draws`: as many as plain RANSAC would make, >= 1. Without `use_scores`, and where all
-  // matches have one score, the samples are those of a Sampler.
+  // `total_draws`: the number of samples that RANSAC draws at most, >= 1. Without `use_scores`, or
+  // if all scores are equal, the samples are those of a Sampler.
   ProsacSampler(const GroupedMatches& matches, SampleKind kind, int sample_size, int total_draws,
                 bool use_scores = true);
 
-  // The next sample, grouped positions of distinct matches; false if there is none. No heap.
+  // Draws the next sample: grouped positions of distinct matches. False if there is none. No heap.
   bool Draw(Random* random, int* sample);
 
   bool CanDraw() const { return sampler_.CanDraw(); }
 
-  // Of the best so many matches the last sample was drawn.
+  // Number of best matches from which the last sample was drawn.
   int pool_size() const { return pool_size_; }
 
  private:
@@ -37,8 +37,8 @@ class ProsacSampler {
   int sample_size_;
   std::vector<int> by_score_;       // group of each match, best score first
   std::vector<MatchGroup> pool_;    // groups of the pool, one after the other
-  std::vector<MatchGroup> groups_;  // of all
-  std::vector<int> order_;          // within a group the best first: grouped positions
+  std::vector<MatchGroup> groups_;  // of all matches
+  std::vector<int> order_;          // grouped positions, within each group by score, best first
   Sampler sampler_;
   int pool_size_ = 0;
   double draws_of_pool_ = 0.0;  // T_n of the paper

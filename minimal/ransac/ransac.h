@@ -1,10 +1,13 @@
-// RANSAC over a solver concept: it knows how to draw, solve and score, and nothing of geometry.
+// The RANSAC loop. It draws, solves and scores through the methods of a solver, and knows nothing
+// of geometry.
 //
-// MSAC, MAGSAC++ or inlier-count score, samples as the solver draws them (PROSAC: prosac.h), the
-// number of iterations adapts to the share of inliers, scoring stops early once a hypothesis can no
-// longer win or is too unlikely to, the best hypothesis of the first min_iterations and each better
-// one after them is locally optimized, and in the end the best ones of a looser score (finalists).
-// Deterministic: the seed fixes the result.
+// - Samples: as the solver draws them (PROSAC: prosac.h).
+// - Score: see ScoreKind. Scoring stops early once a hypothesis can no longer win, or is too
+//   unlikely to win.
+// - Iterations: their number adapts to the share of inliers.
+// - Local optimization: of the best hypothesis of the first min_iterations, and of each better one
+//   after them. At the end also of the finalists, the best hypotheses by a loose threshold.
+// The result depends on the input and the seed only.
 #ifndef RIGEL_MINIMAL_RANSAC_RANSAC_H_
 #define RIGEL_MINIMAL_RANSAC_RANSAC_H_
 
@@ -42,15 +45,14 @@ struct RansacResult {
 //   Draw(Random*, int*)        false if no sample can be drawn
 //   MinimalSolver(sample, Solutions*)   number of solutions
 //   Work(num_solutions)        nominal microseconds of a sample and of scoring its solutions
-//   QuickScore(model, bound)   not above Score() of the model Admit() makes of it; may stop early
-//                              above `bound`
+//   QuickScore(model, bound)   a lower bound of Score() after Admit(); may stop early above `bound`
 //   BailsOut(model, best)      true if it is very unlikely that QuickScore() is below `best`
 //   Admit(Model*)              false if physically impossible; may change the sign of t
 //   Score(model, bound, int* inliers)   lower is better; may stop early above `bound`
 //   LocalOptimize(Model*)      false: unchanged
 //   LooseScore(model, bound)   lower is better, at a loose threshold, cheap; may stop above `bound`
-//   OptimizeLoosely(Model*)    local optimization from a model that is far off; false: no model
-//   Similar(model, model)      true if optimizing both is likely to end in one place
+//   OptimizeLoosely(Model*)    local optimization from far off the minimum; false: no model
+//   Similar(model, model)      true if optimizing both is likely to give the same motion
 template <class S, class = void>
 struct IsRansacSolver : std::false_type {};
 template <class S>
@@ -105,7 +107,7 @@ struct Finalists {
 
   template <class Solver>
   void Add(const Solver& solver, const Model& model, double score, int capacity) {
-    // A similar one that is better makes this one superfluous; similar ones that are worse go.
+    // Not added if a similar one is at least as good. Similar ones that are worse are removed.
     int kept = 0;
     for (int k = 0; k < size; ++k) {
       const bool similar = solver.Similar(items[k].model, model);
@@ -129,10 +131,10 @@ struct Finalists {
 
 }  // namespace ransac_internal
 
-// A run that can be stopped and gone on with, so that several share one budget of iterations. How
-// they are divided does not change what they find. All that is passed must outlive the run;
-// `options` must be valid. `stop` (may be null) is asked before each iteration; what was found by
-// then is the result. No heap allocation but what the solver's methods make.
+// A run that can be interrupted and continued, so that several runs can share one budget of
+// iterations. The interruptions do not change the result. All arguments must outlive the run;
+// `options` must be valid. `stop` (may be null) is asked before each iteration; if it stops the
+// run, the result is the best motion by then. Only the solver's methods allocate memory.
 template <class Solver>
 class RansacRun {
  public:
@@ -152,7 +154,7 @@ class RansacRun {
     result_.minimal_score = kInfinity;
   }
 
-  // At most so many iterations more; returns how many they were, fewer if the run was done.
+  // Makes at most `iterations` more. Returns how many it made: fewer if the run is done.
   int Advance(int iterations) {
     const int before = result_.iterations;
     const int end = before + std::min(iterations, options_.max_iterations - before);
@@ -160,22 +162,22 @@ class RansacRun {
     return result_.iterations - before;
   }
 
-  // A sample of inliers was drawn with the confidence asked for, or there is none, or the work is
-  // used up.
+  // True if a sample of inliers was drawn with the confidence of the options, if there is no
+  // sample, or if the iterations or the work are used up.
   bool Done() const {
     return exhausted_ || !(result_.work_us < options_.max_work_us) ||
            result_.iterations >=
                std::min(options_.max_iterations, std::max(needed_, options_.min_iterations));
   }
 
-  // Optimizes the best hypothesis and the finalists: at the end, or to see how good they are.
+  // Locally optimizes the best hypothesis and the finalists: at the end, or to judge a run so far.
   void OptimizeFinalists() {
     OptimizeBest();
     if (Stopped()) return;
-    // From the best one too: few matches of large parallax may be out of its reach.
+    // The best motion too: its threshold may exclude the few matches of large parallax.
     const Model best = result_.best;
-    // Finalists that may end no better than the best. More of them take time, fewer could miss a
-    // later one that does.
+    // After so many finalists without an improvement the rest is skipped. More of them take time;
+    // with fewer, a later finalist that improves could be missed.
     constexpr int kMaxWorse = 2;
     int num_worse = 0;
     for (int k = capacity_ > 0 ? -1 : 0; k < finalists_.size && result_.found; ++k) {
@@ -185,7 +187,7 @@ class RansacRun {
       const double before = result_.score;
       const double score = FullScore(model, result_.score, &inliers);
       KeepBest(model, score, inliers);
-      // Where the best two finalists end no better, the others would not either.
+      // The finalists are in the order of their scores: the rest is unlikely to improve.
       if (k >= 0 && !(result_.score < before) && ++num_worse == kMaxWorse) break;
     }
   }
@@ -239,7 +241,7 @@ class RansacRun {
       ++result_.hypotheses;
       Judge((*solutions_)[k]);
     }
-    // Before, a better hypothesis would soon make the optimization of this one superfluous.
+    // Not before: early in a run a better hypothesis follows soon.
     if (result_.iterations == options_.min_iterations) OptimizeBest();
   }
 
@@ -252,7 +254,7 @@ class RansacRun {
         solver_.BailsOut(model, result_.minimal_score)) {
       return;
     }
-    // Also false for NaN. The quick score never rejects a winner; of a count there is none.
+    // Also false for NaN. The quick score never rejects a winner. It does not bound a count.
     if (!CountsInliers() &&
         !(solver_.QuickScore(model, Bound(result_.minimal_score)) < result_.minimal_score)) {
       return;
@@ -278,8 +280,8 @@ class RansacRun {
   ransac_internal::Finalists<Model> finalists_;
   RansacResult<Model> result_;
   int needed_;              // iterations
-  bool optimized_ = true;   // the best minimal hypothesis
-  bool exhausted_ = false;  // there is no sample
+  bool optimized_ = true;   // true if the best minimal hypothesis has been optimized
+  bool exhausted_ = false;  // no sample could be drawn
 };
 
 // A whole run. `options` must be valid.

@@ -9,14 +9,13 @@ bool RansacOptions::IsValid(std::string* error) const {
     *error = "threshold_px must be positive and finite, or 0 for auto";
     return false;
   }
-  // Beyond these its square is nothing to compute with.
+  // Beyond these its square loses precision or overflows.
   if (threshold_px != kAutoThresholdPx &&
       (threshold_px < kMinThresholdPx || threshold_px > kMaxThresholdPx)) {
     *error = "threshold_px must lie in 1e-12 to 1e12";
     return false;
   }
-  if (score != ScoreKind::kMsac && score != ScoreKind::kMagsac &&
-      score != ScoreKind::kInlierCount) {
+  if (score != ScoreKind::kMsac && score != ScoreKind::kInlierCount) {
     *error = "score is no ScoreKind";
     return false;
   }
@@ -30,10 +29,6 @@ bool RansacOptions::IsValid(std::string* error) const {
   }
   if (min_iterations < 0) {
     *error = "min_iterations must not be negative";
-    return false;
-  }
-  if (!(min_sample_distance_px >= 0) || !std::isfinite(min_sample_distance_px)) {
-    *error = "min_sample_distance_px must be finite and not negative";
     return false;
   }
   if (num_finalists < 0 || num_finalists > kMaxFinalists) {

@@ -1,4 +1,4 @@
-// The options of RANSAC: score, numbers of iterations and what else ends the loop.
+// The options of RANSAC: threshold, score, iterations, limits of the work.
 #ifndef RIGEL_MINIMAL_RANSAC_RANSAC_OPTIONS_H_
 #define RIGEL_MINIMAL_RANSAC_RANSAC_OPTIONS_H_
 
@@ -9,55 +9,50 @@
 
 namespace rigel {
 
-// Hypotheses: the room that is kept for them. Each takes the time of a local optimization.
+// Capacity, hypotheses. Each takes the time of a local optimization, so more are of no use.
 inline constexpr int kMaxFinalists = 16;
-// Draws in place of one sample. Matches may be so few or so close together that none is spread; the
-// loop has to end then, too.
-inline constexpr int kMaxRedraws = 10;
 
 enum class ScoreKind {
-  kMsac,    // sum min(r^2, threshold^2), Torr and Zisserman 2000
-  kMagsac,  // MAGSAC++, Barath et al. 2020: the noise level marginalized up to the threshold
-  // Number of matches that are no inliers, as of Fischler and Bolles 1981: of hypotheses with as
-  // many inliers the first wins. For comparisons with published figures; it never stops early.
+  kMsac,  // sum min(r^2, threshold^2), Torr and Zisserman 2000
+  // Number of outliers, Fischler and Bolles 1981. Among hypotheses with the same number the first
+  // wins. For comparisons with published figures; scoring never stops early.
   kInlierCount,
 };
 
 struct RansacOptions {
-  // In 1e-12 to 1e12; 3 sigma keeps the estimate efficient. kAutoThresholdPx: 1.5, or 1/300 of the
-  // shortest focal length where that is less; for EstimateMotion(), which resolves it.
+  // Largest Sampson error of an inlier, pixels, 1e-12 to 1e12; three sigma of the image noise is a
+  // good value. kAutoThresholdPx: 1.5, or 1/300 of the shortest focal length if that is less. Only
+  // EstimateMotion() takes this value, and replaces it.
   double threshold_px = kAutoThresholdPx;
-  double confidence = 0.9999;  // in (0, 1): that one sample of inliers was drawn
+  double confidence = 0.9999;  // in (0, 1): probability that a sample of inliers was drawn
   int max_iterations = 10000;  // >= 1
-  // At least so many: noise makes most samples of inliers poor hypotheses.
+  // At least so many, since because of noise most samples of inliers give poor hypotheses.
   int min_iterations = 100;  // >= 0
   bool local_optimization = true;
-  // Samples from the matches of best score first, where they have scores.
+  // Draws from the matches of best score first, if they have scores.
   bool prosac = true;
-  // Scoring stops where a hypothesis can no longer win. Changes the time alone.
+  // Stops scoring a hypothesis that can no longer win. Changes only the time.
   bool early_termination = true;
-  // A hypothesis is left where some of the matches say that it can hardly win (bail-out test, Capel
-  // 2005): of those that would, at most one in a thousand is lost. For scores that are sums.
+  // Scores a hypothesis on a subset first and drops it if it is unlikely to win (bail-out test,
+  // Capel 2005). It loses at most one winner in a thousand. Not for kInlierCount.
   bool bail_out = true;
   ScoreKind score = ScoreKind::kMsac;
-  // Draws again where two matches of a sample lie within min_sample_distance_px of one another:
-  // such samples say little. At most kMaxRedraws times.
-  bool spread_samples = false;
-  double min_sample_distance_px = 30.0;  // >= 0
-  // After the loop, so many hypotheses are locally optimized that do best at a loose threshold and
-  // differ from one another and from the best: where the prior is off, no minimal hypothesis fits
-  // well at the threshold, and the one that fits best may be far from the truth. 0 to
-  // kMaxFinalists.
+  // Number of hypotheses that are locally optimized after the loop: those that score best at a
+  // loose threshold and differ from one another and from the best. They help if the prior has an
+  // error. Then no minimal hypothesis fits well at the threshold, and the one that fits best may be
+  // far from the truth. 0 to kMaxFinalists.
   int num_finalists = 4;
-  // Of more matches than these, hypotheses are scored on so many, drawn evenly over their order:
-  // they tell good from bad as well as all do, and time stays bounded. The samples come from all.
+  // If there are more matches, hypotheses are scored on so many, drawn evenly over their order.
+  // They separate good and bad hypotheses as well as all matches do, and bound the time. Samples
+  // are drawn from all matches.
   int max_scored = 4096;  // >= 1
-  // The loop ends once its work, counted and not timed, so that the result is the same on every
-  // machine, would have taken about so long on one core of 2020. At the defaults only
-  // 6pt-stewenius, and rigs with thousands of camera pairs, come to that before max_iterations.
+  // Bound of the work, microseconds of one core of 2020. The work is counted, not timed, so the
+  // result is the same on every machine. With the defaults only 6pt-stewenius, and rigs with
+  // thousands of camera pairs, reach it before max_iterations.
   double max_work_us = 1.5e6;  // > 0; may be infinite
   uint64_t seed = 1;
 
+  // False with a message in `error` (not null) if a member is out of its range.
   bool IsValid(std::string* error) const;
 };
 

@@ -3,14 +3,14 @@
 namespace rigel {
 namespace {
 
-// Matches of a sample: fixed room, no heap. The largest sample of the catalogue has 17.
+// Capacity, matches of a sample; fixed, for no heap. The largest sample of the catalogue has 17.
 constexpr int kMaxSample = 64;
 
-// Draws distinct indices without a retry: the r-th free index is r plus the number of taken ones at
-// or below it.
+// Draws distinct indices without a retry: the r-th free index is r plus the number of taken indices
+// at or below it.
 class DistinctDraw {
  public:
-  // From [begin, begin + size); at least one of them must be free.
+  // Draws from [begin, begin + size); at least one index must be free.
   int Draw(int begin, int size, Random* random) {
     int free = size;
     for (int k = 0; k < num_taken_; ++k) {
@@ -88,7 +88,7 @@ bool Sampler::Draw(Random* random, int* sample) const {
                             : distinct.Draw(group.begin + group.size, after, random);
     }
   } else {
-    // A camera pair, with a probability of its number of matches.
+    // A camera pair, with a probability proportional to its number of matches.
     int index = random->Index(num_allowed_);
     size_t g = 0;
     while (index >= allowed_[g].size) index -= allowed_[g++].size;

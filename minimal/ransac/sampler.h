@@ -1,4 +1,4 @@
-// Random samples for RANSAC, spread over the cameras.
+// Uniform random samples for RANSAC, spread over the camera pairs.
 #ifndef RIGEL_MINIMAL_RANSAC_SAMPLER_H_
 #define RIGEL_MINIMAL_RANSAC_SAMPLER_H_
 
@@ -10,24 +10,25 @@
 
 namespace rigel {
 
-// Every loop is bounded.
+// Draws samples of the solver's kind (SampleKind of catalogue.h). Draws without retries, so every
+// loop is bounded.
 class Sampler {
  public:
   // `groups` are those of the grouped matches that the indices refer to.
   Sampler(const std::vector<MatchGroup>& groups, SampleKind kind, int sample_size);
 
-  // The same for other groups, which may be empty. No heap if there are no more than before.
+  // The same for other groups, which may be empty. No heap if there are at most as many as before.
   void Set(const std::vector<MatchGroup>& groups, SampleKind kind, int sample_size);
 
   // False if the matches allow no sample at all.
   bool CanDraw() const { return can_draw_; }
 
-  // Distinct indices, as many as the sample size. False if there is no sample.
+  // Fills `sample` with sample_size distinct indices. False if there is no sample.
   bool Draw(Random* random, int* sample) const;
 
  private:
-  std::vector<MatchGroup> groups_;   // with matches
-  std::vector<MatchGroup> allowed_;  // groups that can fill the part of one camera pair
+  std::vector<MatchGroup> groups_;   // those that are not empty
+  std::vector<MatchGroup> allowed_;  // those with enough matches for the part of one camera pair
   int num_matches_ = 0;
   int num_allowed_ = 0;  // matches in them
   SampleKind kind_ = SampleKind::kSpread;

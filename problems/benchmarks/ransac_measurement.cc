@@ -99,7 +99,7 @@ bool HoldsStaticMatches(const FramePair& clean, const Pose& pose, double thresho
 }
 
 RefineOptions RefinementOf(const RansacTask& task, const FramePair& pair) {
-  RefineOptions refine = task.estimate.refine;
+  RefineOptions refine(task.estimate.refine);
   refine.prior_kind = FindSolver(task.estimate.solver)->prior;
   refine.threshold_px = task.estimate.ransac.threshold_px;
   refine.noise_px = pair.noise_px;

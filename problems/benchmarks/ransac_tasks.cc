@@ -30,8 +30,6 @@ const std::vector<Variant>& Variants() {
       {"no PROSAC", [](EstimateOptions* o) { o->ransac.prosac = false; }},
       {"no early termination", [](EstimateOptions* o) { o->ransac.early_termination = false; }},
       {"no bail-out test", [](EstimateOptions* o) { o->ransac.bail_out = false; }},
-      {"MAGSAC++", [](EstimateOptions* o) { o->ransac.score = ScoreKind::kMagsac; }},
-      {"spread samples", [](EstimateOptions* o) { o->ransac.spread_samples = true; }},
   };
   return variants;
 }

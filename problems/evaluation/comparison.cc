@@ -176,7 +176,7 @@ PairResult ComparePair(const FramePair& pair, const EstimateOptions& options,
   result.raw = ErrorsOf(*pair.truth, estimate.raw, direction_means, scale_means);
   if (refined) {
     result.refined = ErrorsOf(*pair.truth, estimate.pose, direction_means, scale_means);
-    RefineOptions bound_options = options.refine;
+    RefineOptions bound_options(options.refine);
     bound_options.prior_kind = FindSolver(estimate.solver)->prior;
     bound_options.threshold_px = options.ransac.threshold_px;
     if (const auto bound = ComputeCramerRaoBound(bound_options, pair)) {

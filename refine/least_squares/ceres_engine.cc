@@ -16,7 +16,7 @@ namespace {
 
 bool Asked(Stop* stop) { return stop != nullptr && stop->Asked(); }
 
-// What all residual blocks share at one point: the motion and the linearized camera pairs.
+// Shared by all residual blocks: the motion and the linearized camera pairs at the current point.
 class SharedEvaluation : public ceres::EvaluationCallback {
  public:
   SharedEvaluation(const MotionParameterization& parameterization,
@@ -38,7 +38,7 @@ class SharedEvaluation : public ceres::EvaluationCallback {
   Pose pose;
   MotionBasis basis;
   std::vector<GroupLinearization> groups;
-  bool stopped = false;  // no block evaluates any more: many of them take long
+  bool stopped = false;  // then no block evaluates: with many blocks that would take long
 
  private:
   const MotionParameterization& parameterization_;
@@ -100,7 +100,7 @@ class PriorCost : public ceres::CostFunction {
   double unit_;  // the image noise: residuals of matches are in pixels, the prior's in sigmas
 };
 
-// Tells of each iteration and ends the solution when it is asked to.
+// Reports each iteration, and ends the solver when `stop` asks for it.
 class IterationReport : public ceres::IterationCallback {
  public:
   IterationReport(Stop* stop, const std::function<void(int, double)>* progress)
@@ -127,7 +127,7 @@ LeastSquaresSummary SolveWithCeres(const LeastSquaresOptions& options,
   SharedEvaluation shared(parameterization, residuals, parameters, options.stop);
   std::deque<MatchCost> costs;
   PriorCost prior_cost(prior, shared, prior_unit, size);
-  // The algebraic residual is in metres: a scale in pixels means nothing to it.
+  // The algebraic residual is in metres, and the scale of the loss in pixels.
   const std::unique_ptr<ceres::LossFunction> loss =
       options.residual == ResidualKind::kAlgebraic && !options.bundle
           ? nullptr
@@ -141,11 +141,11 @@ LeastSquaresSummary SolveWithCeres(const LeastSquaresOptions& options,
   ceres::Problem problem(problem_options);
   constexpr int kStopEvery = 1024;
   std::deque<ReprojectionCost> reprojections;
-  // In one piece: Ceres orders the blocks of a group by their addresses.
+  // Contiguous, since Ceres orders the blocks of a group by their addresses.
   std::vector<ReprojectionCost::Point> points;
   if (options.bundle) points.reserve(weights.size());
   for (int k = 0; k < matches.size(); ++k) {
-    // The start is what there is by then.
+    // The parameters are still those of the start.
     if (k % kStopEvery == 0 && Asked(options.stop)) {
       LeastSquaresSummary summary;
       summary.usable = true;
@@ -191,7 +191,7 @@ LeastSquaresSummary SolveWithCeres(const LeastSquaresOptions& options,
   ceres::Solve(solver_options, &problem, &ceres_summary);
 
   LeastSquaresSummary summary;
-  // Stopped within the first evaluation: Ceres leaves the start.
+  // If stopped within the first evaluation, Ceres leaves the parameters at the start.
   summary.usable = ceres_summary.IsSolutionUsable() || shared.stopped;
   summary.initial_cost = ceres_summary.initial_cost;
   summary.final_cost = ceres_summary.final_cost;

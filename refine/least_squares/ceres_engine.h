@@ -1,6 +1,6 @@
-// Least squares on the residuals of a frame pair as a ceres::Problem: every residual and form of
-// Refine(), bundle adjustment among them. The small engine does the common ones in a fifth of the
-// time.
+// Least squares on the residuals of a frame pair by a ceres::Problem: for every residual and form
+// of Refine(), including bundle adjustment. The small engine takes a fifth of the time for the
+// common ones (rigel_benchmark --refine).
 #ifndef RIGEL_REFINE_LEAST_SQUARES_CERES_ENGINE_H_
 #define RIGEL_REFINE_LEAST_SQUARES_CERES_ENGINE_H_
 
@@ -16,9 +16,9 @@ namespace rigel {
 
 // Minimizes over `parameters` (in: the start, out: the best found), parameterization.size() of
 // them. `weights` multiply the residuals (grouped order; 0 leaves a match out). The residuals of
-// `prior` are multiplied by `prior_unit`, pixels, and take no loss; nor do algebraic ones. The
-// points of a bundle adjustment start where the matches meet under `start`. options.stop is asked
-// while the problem is built, too.
+// `prior` are multiplied by `prior_unit`, pixels. They have no loss; nor have algebraic residuals.
+// The points of a bundle adjustment start where the rays of the matches meet under `start`.
+// options.stop is also asked while the problem is built.
 LeastSquaresSummary SolveWithCeres(const LeastSquaresOptions& options,
                                    const GroupedMatches& matches,
                                    const MotionParameterization& parameterization,

@@ -3,9 +3,9 @@
 //   kSampson    C / |dC/d(pixels)|: pixels, the first-order distance from an exact match
 //   kAngular    C / |dC/d(ray directions)| times the mean focal length: pixels at the image centre,
 //               for wide-angle lenses; per unit angle on the viewing sphere
-//   kAlgebraic  C itself, metres (paper eq. b2). For intra-camera matches it vanishes at the zero
-//               motion R = I, t = 0 whatever the matches are, and least squares on it runs there:
-//               honest for inter-camera matches only.
+//   kAlgebraic  C itself, metres (paper eq. b2). For intra-camera matches it is zero at the zero
+//               motion R = I, t = 0 for any matches, and least squares converges there. So it is of
+//               use for inter-camera matches only.
 //
 // kSampson and kAngular do not change when E is scaled. At an epipole (gradient zero up to
 // rounding) and at E = 0 their residual and Jacobian are defined as zero.
@@ -27,11 +27,11 @@ namespace rigel {
 struct GroupLinearization {
   Eigen::Matrix3d F;
   Eigen::Matrix3d dF[6];
-  double rounding2;  // times |p|^2: what rounding can make of a squared gradient of zero
+  double rounding2;  // times |p|^2: the rounding error of a squared gradient of zero
 };
 
-// Once a motion: fills one linearization a group of the matches. `basis` gives the parameters'
-// derivatives; null if no Jacobian is wanted.
+// Fills one linearization for each group of the matches, at a motion. `basis` has the derivatives
+// by the parameters; null if no Jacobian is wanted.
 void LinearizeGroups(const GroupedMatches& matches, ResidualKind kind, const Pose& pose,
                      const MotionBasis* basis, std::vector<GroupLinearization>* groups);
 

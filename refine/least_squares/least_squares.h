@@ -1,5 +1,4 @@
-// What the engines that minimize over the residuals of a frame pair have in common: their options
-// and what they tell.
+// Options and summary of the least-squares engines (small_engine.h, ceres_engine.h).
 #ifndef RIGEL_REFINE_LEAST_SQUARES_LEAST_SQUARES_H_
 #define RIGEL_REFINE_LEAST_SQUARES_LEAST_SQUARES_H_
 
@@ -9,7 +8,7 @@ namespace rigel {
 
 class Stop;
 
-// Their formulas: epipolar_residuals.h.
+// The formulas are in epipolar_residuals.h.
 enum class ResidualKind { kSampson, kAngular, kAlgebraic };
 
 // rho(s) of the squared residual s with scale a: kNone s; kHuber, kCauchy, kTukey as in Ceres;
@@ -20,23 +19,24 @@ struct LeastSquaresOptions {
   LossKind loss = LossKind::kTruncated;
   double loss_scale = 1.5;  // pixels, > 0
   int max_num_iterations = 4;
-  // Asked before each iteration (null: never): it ends with the best parameters by then.
+  // Asked before each iteration; if it stops the engine, the best parameters by then are returned.
+  // Null: never.
   Stop* stop = nullptr;
   // Called after each iteration with its number, from 1 (Ceres: from 0, the start), and the cost.
   // Null: not at all.
   const std::function<void(int, double)>* progress = nullptr;
 
-  // Of the small engine alone. Converged once a step promises to lower the cost by less than this
-  // fraction of it. Of n residuals the step is then about sqrt(n tolerance) standard deviations
-  // long, and it is taken.
+  // Small engine only. Converged if a step is predicted to lower the cost by less than this
+  // fraction of it. With n residuals the step is then about sqrt(n tolerance) standard deviations
+  // long. It is still taken.
   double tolerance = 1e-4;
-  // SmallEngine::Minimize(): TranslationForm::kInverseScale instead of a free t, for matches that
-  // hardly determine |t|.
+  // SmallEngine::Minimize() only: TranslationForm::kInverseScale instead of a free t, for matches
+  // that hardly determine |t|.
   bool inverse_scale = false;
 
-  // Of Ceres alone: the small engine has Sampson errors, and no points.
+  // Ceres only; the small engine always has Sampson residuals and no points.
   ResidualKind residual = ResidualKind::kSampson;
-  // The points of the matches are parameters, too, and their reprojection errors the residuals.
+  // The points of the matches are parameters too, and the residuals are their reprojection errors.
   bool bundle = false;
 };
 

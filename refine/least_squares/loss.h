@@ -1,4 +1,4 @@
-// Robust losses by name.
+// Robust losses: names, Ceres loss functions, and weights.
 #ifndef RIGEL_REFINE_LEAST_SQUARES_LOSS_H_
 #define RIGEL_REFINE_LEAST_SQUARES_LOSS_H_
 

@@ -50,7 +50,7 @@ bool MotionParameterization::Set(RotationForm rotation, TranslationForm translat
       translation_size_ = 1;
       const Eigen::Vector3d in_plane = start.t - normal * normal.dot(start.t);
       norm_ = start.t.norm();
-      // Along the normal only rounding is left in the plane.
+      // A t along the normal has only rounding in the plane.
       if (!(in_plane.norm() > 1e-9 * norm_)) return false;
       direction_ = in_plane.normalized();
       tangent_.col(0) = normal.cross(direction_);
@@ -186,7 +186,7 @@ void MotionParameterization::Evaluate(const double* parameters, Pose* pose,
       pose->t = TranslationFromDepths(pose->R, reference_, l.x(), l.y());
       const Eigen::Vector3d v = by_depth * across_;
       if (holds_norm_) {
-        // |t + q v| = norm, the solution on the side of the start; the nearest where there is none.
+        // |t + q v| = norm: the solution on the side of the start, or the nearest |t| without one.
         const double b = pose->t.dot(v);
         const double excess = pose->t.squaredNorm() - norm_ * norm_;
         const double root = std::sqrt(std::max(0.0, b * b - v.squaredNorm() * excess));
@@ -196,7 +196,7 @@ void MotionParameterization::Evaluate(const double* parameters, Pose* pose,
       }
       if (basis != nullptr) {
         const Eigen::Vector3d arm = pose->R * (reference_.ray1.Foot() + l.x() * reference_.ray1.x);
-        // t = ... - arm, and the arm turns with R.
+        // t = ... - arm, and the arm rotates with R.
         const Eigen::Matrix3d turn = Skew(arm);
         basis->block(3, 0, 3, rotation_size_) = turn * basis->block(0, 0, 3, rotation_size_);
         for (int k = 0; k < translation_size_; ++k) {

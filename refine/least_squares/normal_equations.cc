@@ -9,7 +9,7 @@ namespace {
 
 using RowMajor3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-// The group's centred fundamental matrix, and its derivatives.
+// Returns the group's centred fundamental matrix, and fills its derivatives.
 RowMajor3d Differentiate(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
                          FundamentalDerivatives* D) {
   const RigCamera& c1 = matches.rig().cameras[group.camera1];
@@ -23,7 +23,7 @@ RowMajor3d Differentiate(const GroupedMatches& matches, const MatchGroup& group,
     const Eigen::Vector3d l = left.col(i);
     const Eigen::Vector3d lb = l.cross(b);
     for (int j = 0; j < 3; ++j) {
-      // F_ij = l.(b x r); r turns with R, b does and moves with t.
+      // F_ij = l.(b x r); r depends on R, b on R and t.
       const Eigen::Vector3d r = right.col(j);
       const Eigen::Vector3d rl = r.cross(l);
       const Eigen::Vector3d by_w = Rs.cross(rl) + r.cross(lb);
@@ -39,7 +39,7 @@ RowMajor3d Differentiate(const GroupedMatches& matches, const MatchGroup& group,
   return F;
 }
 
-// Times |p|^2: what rounding can make of a squared gradient of zero.
+// Times |p|^2: the rounding error of a squared gradient of zero.
 double Rounding2(const RowMajor3d& F) {
   constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
   return kRounding * kRounding * F.squaredNorm();

@@ -1,4 +1,4 @@
-// The normal equations of the Sampson errors of a frame pair by its motion.
+// The normal equations of the Sampson errors of a frame pair, by the motion.
 #ifndef RIGEL_REFINE_LEAST_SQUARES_NORMAL_EQUATIONS_H_
 #define RIGEL_REFINE_LEAST_SQUARES_NORMAL_EQUATIONS_H_
 
@@ -18,16 +18,16 @@ struct MotionNormalEquations {
   Matrix6d curvature = Matrix6d::Zero();
 };
 
-// Adds what SumSampson() gives at `pose` for `pixels` and their weights: matches of the group, or
-// some of them. Without `derivatives` only to the cost, by the same bits.
+// Adds the result of SumSampson() at `pose` for `pixels` and their weights: all matches of the
+// group or some of them. Without `derivatives` it adds only the cost, with the same bits.
 void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatches& matches,
                         const MatchGroup& group, const PixelArrays& pixels, const double* weights,
                         const Pose& pose, bool derivatives, MotionNormalEquations* sum);
 
-// w^2 J C J' of each match of the group, J the derivative of its Sampson error (pixels) by that
-// perturbation and w its weight. With C the covariance of the motion by matches of unit noise this
-// is the leverage of a match that is one of them: 0 to 1, over all matches the number of
-// parameters.
+// w^2 J C J' of each match of the group. J is the derivative of its Sampson error (pixels) by that
+// perturbation, w its weight, C = `covariance`. If C is the covariance of the motion from these
+// matches with unit noise, this is the leverage of the match: 0 to 1. The sum over all matches is
+// then the number of parameters.
 void Leverages(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
                const double* weights, const Matrix6d& covariance, double* leverages);
 

@@ -49,7 +49,7 @@ void PriorResiduals::Evaluate(const Pose& pose, Residuals* residuals, Jacobian* 
   if (with_distance_) {
     const double norm = pose.t.norm();
     (*residuals)(num_direction_) = distance_weight_ * (norm - distance_);
-    // At t = 0 no direction of t is the longer one.
+    // At t = 0 the derivative of |t| does not exist.
     if (jacobian != nullptr && norm > 0) {
       jacobian->block<1, 3>(num_direction_, 3) = distance_weight_ / norm * pose.t.transpose();
     }

@@ -1,11 +1,13 @@
 // A motion prior as residuals in units of its sigma.
 //
-//   gravity  the two components of R g1 across g2, over sqrt(2) sigma: both directions are measured
-//   axis     the two components of R n - n across n, over sigma times the length of that chord per
-//            radian of error in n, 2 sin(a/2), a at most 3; below kMinAxisAngle of rotation the
-//            axis says nothing measurable and the chord at kMinAxisAngle is used
-//   normal   the same for R n - n, and the component of t along n over |t| sigma
-//   distance (|t| - D) / sigma, D from wheel odometry, with each of them or alone
+//   gravity   the two components of R g1 perpendicular to g2, over sqrt(2) sigma, since both
+//             directions are measured
+//   axis      the two components of R n - n perpendicular to n, over 2 sin(a/2) sigma. An error of
+//             n by a small angle changes R n - n by 2 sin(a/2) times that angle, a the angle of
+//             rotation (at most 3). Below kMinAxisAngle an axis is not measurable; a is then
+//             kMinAxisAngle.
+//   normal    the same for R n - n, and the component of t along n over |t| sigma
+//   distance  (|t| - D) / sigma, D for example from wheel odometry; alone or with another one
 // A part without a sigma gives no residual.
 #ifndef RIGEL_REFINE_LEAST_SQUARES_PRIOR_RESIDUALS_H_
 #define RIGEL_REFINE_LEAST_SQUARES_PRIOR_RESIDUALS_H_

@@ -46,7 +46,7 @@ bool ReprojectionCost::Evaluate(double const* const* parameters, double* residua
   const Eigen::Vector3d turned = RQ * c1.Normalize(match_.pixel1 + Eigen::Vector2d(du, dv));
   // rho times the point in camera 2.
   const Eigen::Vector3d y = camera2_.Q.transpose() * (turned + rho * b);
-  // A point in the plane of the camera has no image; the step that leads there is refused.
+  // A point in the plane of the camera has no image. Ceres then rejects the step.
   if (!(std::abs(y.z()) > 1e-12)) return false;
   const Eigen::Vector2d projected = c2.Project(y);
   residuals[0] = weight_ * du;

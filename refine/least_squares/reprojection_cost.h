@@ -1,9 +1,9 @@
 // Two-view bundle adjustment: the reprojection errors of one match in both images.
 //
-// A point has three parameters: (du, dv), pixels, what its image in view 1 is off by, and its
-// inverse depth rho = 1/z in camera 1. With the ray of view 1 taken as exact (rho alone) noise of
-// view 1 would be charged to view 2; with all three the minimum is the maximum-likelihood motion.
-// rho passes through 0: a point at infinity is nothing special.
+// A point has three parameters: the error (du, dv) of its image in view 1, pixels, and its inverse
+// depth rho = 1/z in camera 1, 1/metres. With rho alone the ray of view 1 would be exact, and the
+// noise of view 1 would count as an error in view 2. With all three the minimum is the
+// maximum-likelihood motion. rho = 0, a point at infinity, is no special case.
 #ifndef RIGEL_REFINE_LEAST_SQUARES_REPROJECTION_COST_H_
 #define RIGEL_REFINE_LEAST_SQUARES_REPROJECTION_COST_H_
 

@@ -21,13 +21,13 @@ struct Rows {
   double rho[kBlock];                // kCauchy: 1 + s / scale^2
 };
 
-// No loop has a rest of single matches.
+// Rounded up to whole vectors, so that no loop ends with single matches.
 RIGEL_KERNEL_BODY int WholeLanes(int size) {
   return (size + (kKernelPadding - 1)) & ~(kKernelPadding - 1);
 }
 
-// What the loss makes of s: its value (kCauchy: what the logarithm is taken of), rho', and
-// D = 1 + 2 s rho'' / rho', Newton's share of the curvature.
+// The loss at s: its value rho (for kCauchy the argument of the logarithm), rho', and
+// 1 + 2 s rho'' / rho', the factor of the curvature in Newton's method.
 RIGEL_KERNEL_BODY void Loss(LossKind kind, double c, double c2, double s, double* rho,
                             double* slope, double* newton) {
   switch (kind) {
@@ -68,10 +68,10 @@ RIGEL_KERNEL_BODY void Loss(LossKind kind, double c, double c2, double s, double
   }
 }
 
-// Returns the sum of rho over the block (kCauchy: of what is left of it, see below).
-RIGEL_KERNEL_BODY void Linearize(LossKind kind, bool newton_curvature, bool derivatives, double c,
-                                 const PixelArrays& p, const double* weights, int begin, int size,
-                                 const double F[9], double rounding2, Rows* rows) {
+// Fills `rows` for the block: rho, and with `derivatives` the rest.
+RIGEL_KERNEL_BODY void Linearize(LossKind kind, bool derivatives, double c, const PixelArrays& p,
+                                 const double* weights, int begin, int size, const double F[9],
+                                 double rounding2, Rows* rows) {
   const double c2 = c * c;
   constexpr double kMinNewton = 1.0 / 3.0;
   for (int i = 0; i < size; ++i) {
@@ -89,7 +89,7 @@ RIGEL_KERNEL_BODY void Linearize(LossKind kind, bool newton_curvature, bool deri
     rows->rho[i] = rho;
     if (!derivatives) continue;
     const double fg = f2 * slope;
-    const double fh = newton_curvature ? fg * (newton > kMinNewton ? newton : 1.0) : fg;
+    const double fh = fg * (newton > kMinNewton ? newton : 1.0);
     // de/dF = f (u p1' - v b'), where the third entry of b counts as zero.
     const double m = t.C * inverse2;
     const double u0 = x2 - m * t.a0;
@@ -132,7 +132,7 @@ struct Accumulated {
   Lanes H[kEntries][kEntries];  // the lower triangle
 };
 
-// Adds kRow + 1 entries of row kRow of H, and what that row has in the last column.
+// Adds the first kRow + 1 entries of row kRow of H, and its entry in the last column.
 template <int kRow>
 RIGEL_KERNEL_BODY void AddRow(const Rows& rows, int size, Accumulated* sums) {
   Lanes sum[kRow + 1];
@@ -173,7 +173,7 @@ RIGEL_KERNEL_BODY void AddRowsBody(const Rows& rows, int size, Accumulated* sums
   AddGradient(rows, size, sums);
 }
 
-// Functions of their own, in which the sums of a loop have the registers for themselves.
+// Separate functions, so that the sums of a loop stay in registers.
 using AddRowsFunction = void(const Rows& rows, int size, Accumulated* sums);
 __attribute__((noinline)) void AddRows(const Rows& rows, int size, Accumulated* sums) {
   AddRowsBody(rows, size, sums);
@@ -184,12 +184,12 @@ RIGEL_TARGET_AVX2 __attribute__((noinline)) void AddRowsAvx2(const Rows& rows, i
 }
 
 // Adds matches begin to begin + size. A size that the compiler knows makes faster loops.
-RIGEL_KERNEL_BODY void AddBlock(LossKind kind, bool newton, bool derivatives, double c,
+RIGEL_KERNEL_BODY void AddBlock(LossKind kind, bool derivatives, double c,
                                 const PixelArrays& pixels, const double* weights, int begin,
                                 int size, const double F[9], double rounding2,
                                 AddRowsFunction* add_rows, Accumulated* sum) {
   Rows rows;
-  Linearize(kind, newton, derivatives, c, pixels, weights, begin, size, F, rounding2, &rows);
+  Linearize(kind, derivatives, c, pixels, weights, begin, size, F, rounding2, &rows);
   sum->cost += SumRho(kind, c, rows.rho, size);
   if (!derivatives) return;
   add_rows(rows, size, sum);
@@ -204,9 +204,9 @@ RIGEL_KERNEL_BODY int FillUp(const double* weights, int size, double filled[kBlo
   return whole;
 }
 
-RIGEL_KERNEL_BODY void Sum(LossKind kind, bool newton, bool derivatives, double c,
-                           const PixelArrays& pixels, const double* weights, const double F[9],
-                           double rounding2, AddRowsFunction* add_rows, SampsonSums* sums) {
+RIGEL_KERNEL_BODY void Sum(LossKind kind, bool derivatives, double c, const PixelArrays& pixels,
+                           const double* weights, const double F[9], double rounding2,
+                           AddRowsFunction* add_rows, SampsonSums* sums) {
   Accumulated sum;
   sum.cost = 0.0;
   for (int i = 0; i < kEntries; ++i) {
@@ -215,14 +215,13 @@ RIGEL_KERNEL_BODY void Sum(LossKind kind, bool newton, bool derivatives, double 
   }
   int begin = 0;
   for (; begin + kBlock <= pixels.size; begin += kBlock) {
-    AddBlock(kind, newton, derivatives, c, pixels, weights + begin, begin, kBlock, F, rounding2,
-             add_rows, &sum);
+    AddBlock(kind, derivatives, c, pixels, weights + begin, begin, kBlock, F, rounding2, add_rows,
+             &sum);
   }
   if (begin < pixels.size) {
     double rest[kBlock];
     const int whole = FillUp(weights + begin, pixels.size - begin, rest);
-    AddBlock(kind, newton, derivatives, c, pixels, rest, begin, whole, F, rounding2, add_rows,
-             &sum);
+    AddBlock(kind, derivatives, c, pixels, rest, begin, whole, F, rounding2, add_rows, &sum);
   }
   sums->cost = 0.5 * sum.cost;
   if (!derivatives) return;
@@ -237,16 +236,13 @@ RIGEL_KERNEL_BODY void Dispatch(const SampsonKernelOptions& options, bool deriva
                                 const PixelArrays& pixels, const double* weights, const double F[9],
                                 double rounding2, AddRowsFunction* add_rows, SampsonSums* sums) {
   const double c = options.loss_scale;
-  const bool newton = options.curvature == Curvature::kNewton;
-#define RIGEL_SUM(kind)                                                          \
-  case kind:                                                                     \
-    if (!derivatives) {                                                          \
-      Sum(kind, false, false, c, pixels, weights, F, rounding2, add_rows, sums); \
-    } else if (newton) {                                                         \
-      Sum(kind, true, true, c, pixels, weights, F, rounding2, add_rows, sums);   \
-    } else {                                                                     \
-      Sum(kind, false, true, c, pixels, weights, F, rounding2, add_rows, sums);  \
-    }                                                                            \
+#define RIGEL_SUM(kind)                                                   \
+  case kind:                                                              \
+    if (derivatives) {                                                    \
+      Sum(kind, true, c, pixels, weights, F, rounding2, add_rows, sums);  \
+    } else {                                                              \
+      Sum(kind, false, c, pixels, weights, F, rounding2, add_rows, sums); \
+    }                                                                     \
     break
   switch (options.loss) {
     RIGEL_SUM(LossKind::kNone);
@@ -258,7 +254,7 @@ RIGEL_KERNEL_BODY void Dispatch(const SampsonKernelOptions& options, bool deriva
 #undef RIGEL_SUM
 }
 
-// Lower triangle of C, what is off the diagonal doubled.
+// Lower triangle of C, with the entries off the diagonal doubled.
 struct QuadraticForm {
   double q[kEntries][kEntries];
 };
@@ -267,7 +263,7 @@ RIGEL_KERNEL_BODY void BlockLeverages(const PixelArrays& pixels, const double* w
                                       int size, const double F[9], const QuadraticForm& form,
                                       double rounding2, double* leverages) {
   Rows rows;
-  Linearize(LossKind::kNone, false, true, 1.0, pixels, weights, begin, size, F, rounding2, &rows);
+  Linearize(LossKind::kNone, true, 1.0, pixels, weights, begin, size, F, rounding2, &rows);
   for (int i = 0; i < size; i += kLanes) {
     Lanes row[kEntries];
     for (int k = 0; k < kEntries - 1; ++k) row[k] = LanesAt(rows.row[k] + i);

@@ -1,9 +1,9 @@
 // The inner loop of the refinement: normal equations of the Sampson errors of one camera pair by
 // the nine entries of its fundamental matrix.
 //
-// The residual of a match depends on the motion through F alone, so that the sums over the matches
-// need no derivative of the motion: H = sum (dr/dF)(dr/dF)' is turned into the normal equations of
-// any parameters by dF/d(parameters), once a camera pair.
+// The residual of a match depends on the motion only through F. So the sums over the matches need
+// no derivative by the motion. H = sum (dr/dF)(dr/dF)' is converted to the normal equations of any
+// parameters by dF/d(parameters), once for each camera pair.
 #ifndef RIGEL_REFINE_LEAST_SQUARES_SAMPSON_KERNEL_H_
 #define RIGEL_REFINE_LEAST_SQUARES_SAMPSON_KERNEL_H_
 
@@ -15,30 +15,24 @@ namespace rigel {
 
 // For e = w r, the Sampson error in pixels times the weight of the match, and s = e^2.
 struct SampsonSums {
-  double cost;   // 1/2 sum rho(s)
-  double g[9];   // sum rho'(s) e de/dF, F row by row
-  double H[81];  // sum h(s) (de/dF)(de/dF)', full and symmetric; see SumSampson()
-};
-
-// What the second derivative of the loss does to H.
-enum class Curvature {
-  kReweighted,  // h = rho': every step lowers the cost of the reweighted least squares
-  // h = rho' + 2 s rho'' (Newton's) where that is above rho'/3, else rho': near the minimum a step
-  // leaves next to nothing, and outliers do not make it too long.
-  kNewton,
+  double cost;  // 1/2 sum rho(s)
+  double g[9];  // sum rho'(s) e de/dF, F row by row
+  // sum h(s) (de/dF)(de/dF)', full and symmetric. h = rho' + 2 s rho'' (Newton's) where that is
+  // above rho'/3, else rho': near the minimum a step leaves next to nothing, and outliers do not
+  // make it too long.
+  double H[81];
 };
 
 struct SampsonKernelOptions {
   LossKind loss = LossKind::kNone;
   double loss_scale = 1.0;  // pixels, > 0
-  Curvature curvature = Curvature::kReweighted;
 };
 
-// `F` is the row-major centred fundamental matrix, `weights` one number a match: matches with 0 are
-// left out. The pixels are read up to a multiple of kKernelPadding: any finite numbers. A match
-// whose squared gradient is not above rounding2 (|p1|^2 + |p2|^2) is at an epipole: its residual
-// and derivative are zero. Without a gradient (`derivatives` false) only the cost is set. The bits
-// do not depend on the path.
+// `F` is the row-major centred fundamental matrix. `weights` has one number for each match; 0
+// leaves it out. The pixels are read up to a multiple of kKernelPadding, where any finite numbers
+// may be. A match whose squared gradient is not above rounding2 (|p1|^2 + |p2|^2) is at an epipole:
+// its residual and derivative are zero. Without `derivatives` only the cost is set. The bits do not
+// depend on the path.
 void SumSampson(const SampsonKernelOptions& options, const PixelArrays& pixels,
                 const double* weights, const double F[9], double rounding2, bool derivatives,
                 SampsonSums* sums, CpuPath path = BestCpuPath());
@@ -52,8 +46,8 @@ struct FundamentalDerivatives {
 void AddProjected(const SampsonSums& sums, const FundamentalDerivatives& D, double* gradient,
                   double* curvature, CpuPath path = BestCpuPath());
 
-// w^2 (dr/dF) C (dr/dF)' of each match: the variance of its residual r that an error of F brings, C
-// (row-major) being the covariance of F's entries. F, weights, padding and rounding2 as above.
+// w^2 (dr/dF) C (dr/dF)' of each match: the variance of its residual r because of the error of F. C
+// (row-major) is the covariance of F's entries. F, weights, padding and rounding2 as above.
 void SampsonLeverages(const PixelArrays& pixels, const double* weights, const double F[9],
                       const double C[81], double rounding2, double* leverages,
                       CpuPath path = BestCpuPath());

@@ -16,7 +16,7 @@ using ParameterVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor
 using ParameterMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 
-// Cost, gradient and curvature at one point, and how to get them.
+// Cost, gradient and curvature at one point.
 class ParameterEquations {
  public:
   ParameterEquations(const LeastSquaresOptions& options, const GroupedMatches& matches,
@@ -29,7 +29,6 @@ class ParameterEquations {
         prior_unit_(prior_unit) {
     kernel_.loss = options.loss;
     kernel_.loss_scale = options.loss_scale;
-    kernel_.curvature = Curvature::kNewton;
   }
 
   // Without `derivatives` only the cost is set.
@@ -47,7 +46,7 @@ class ParameterEquations {
     }
     cost = sum.cost;
     if (derivatives) {
-      // Filled up with zeros, so that the sizes are known to the compiler.
+      // Padded with zeros, so that the compiler knows the sizes.
       Matrix6d B = Matrix6d::Zero();
       B.leftCols(n) = basis;
       gradient = (B.transpose() * sum.gradient).head(n);
@@ -85,7 +84,7 @@ class ParameterEquations {
   SampsonKernelOptions kernel_;
 };
 
-// Damping by the diagonal of the scaled curvature; radians and metres are unlike.
+// Damping by the diagonal of the scaled curvature, since radians and metres differ in size.
 ParameterVector DampedStep(const ParameterEquations& at, double mu) {
   constexpr double kMinDiagonal = 1e-6;
   const ParameterVector scale = (1.0 + at.curvature.diagonal().array().sqrt()).inverse();
@@ -156,7 +155,7 @@ LeastSquaresSummary SmallEngine::Solve(const LeastSquaresOptions& options,
       break;
     }
     const ParameterVector candidate = best + step;
-    // No step follows the last one.
+    // After the last step no derivatives are needed.
     const bool last = summary.num_iterations == options.max_num_iterations;
     if (candidate.allFinite()) next.Evaluate(candidate, /*derivatives=*/!last);
     if (candidate.allFinite() && next.AllFinite() && next.cost < at.cost) {
@@ -171,7 +170,7 @@ LeastSquaresSummary SmallEngine::Solve(const LeastSquaresOptions& options,
     } else {
       mu *= growth;
       growth *= 2.0;
-      // Nothing below rounding can be gained.
+      // The step is so short that only rounding is left.
       if (mu > kMaxDamping) break;
     }
     if (options.progress != nullptr) (*options.progress)(summary.num_iterations, at.cost);

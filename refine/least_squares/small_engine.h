@@ -1,9 +1,9 @@
-// Least squares on the Sampson errors of a frame pair without building a ceres::Problem: what local
-// optimization in RANSAC and Refine() run on.
+// Least squares on the Sampson errors of a frame pair, without a ceres::Problem. Refine() and the
+// local optimization in RANSAC use it.
 //
-// Levenberg-Marquardt on the normal equations that sampson_kernel.h sums, so that an iteration
-// costs little more than a look at each match: 600 matches and a robust loss from a hypothesis that
-// is 1 degree off take a tenth of the time of a Problem (rigel_benchmark --refine).
+// Levenberg-Marquardt on the normal equations that sampson_kernel.h sums. With 600 matches, a
+// robust loss and a start 1 degree off it takes a tenth of the time of a Problem (rigel_benchmark
+// --refine).
 #ifndef RIGEL_REFINE_LEAST_SQUARES_SMALL_ENGINE_H_
 #define RIGEL_REFINE_LEAST_SQUARES_SMALL_ENGINE_H_
 
@@ -17,7 +17,7 @@
 
 namespace rigel {
 
-// The matches of weight above zero, group by group: what is left out takes no time.
+// The matches of weight above zero, group by group, so that the others take no time.
 struct PackedMatches {
   // `weights`: grouped order.
   void Set(const GroupedMatches& matches, const std::vector<double>& weights);
@@ -26,7 +26,7 @@ struct PackedMatches {
   std::vector<PixelArrays> groups;  // into the arrays above
 };
 
-// Keeps its memory from call to call: no heap after the first.
+// Keeps its memory from call to call: no heap allocation after the first.
 class SmallEngine {
  public:
   // `matches` must outlive this object.
@@ -36,15 +36,15 @@ class SmallEngine {
 
   // Minimizes over `parameters` (in: the start, out: the best found), parameterization.size() of
   // them. `weights` multiply the residuals (grouped order; 0 leaves a match out). The residuals of
-  // `prior` at the motion are multiplied by `prior_unit`, pixels, and take no loss.
+  // `prior` at the motion are multiplied by `prior_unit`, pixels, and have no loss.
   LeastSquaresSummary Solve(const LeastSquaresOptions& options,
                             const MotionParameterization& parameterization,
                             const std::vector<double>& weights, const PriorResiduals& prior,
                             double prior_unit, double* parameters);
 
-  // Over rotation and translation and the matches with mask[k] != 0 (grouped order; as many as
-  // the matches). False, and `pose` unchanged, if no step lowers the cost or the result is not
-  // finite.
+  // Minimizes over rotation and translation, for the matches with mask[k] != 0 (grouped order, one
+  // entry for each match). False, and `pose` unchanged, if no step lowers the cost or the result is
+  // not finite.
   bool Minimize(const LeastSquaresOptions& options, const std::vector<char>& mask, Pose* pose);
 
   int num_iterations() const { return num_iterations_; }  // of the last call

@@ -17,8 +17,8 @@ namespace rigel {
 
 namespace {
 
-// Of an information matrix with a unit diagonal: what rounding in pixels of some hundred makes of
-// zero stays below this.
+// Smallest eigenvalue of an information matrix with a unit diagonal. With pixel coordinates of some
+// hundred, rounding makes less than this of a zero.
 constexpr double kMinEigenvalue = 1e-11;
 
 // J'J of the Sampson residuals of one camera pair, each times its weight.
@@ -54,8 +54,8 @@ void EpipoleWeights(const GroupedMatches& matches, const Pose& pose, double nois
 
 namespace {
 
-// Appends `factor` times the parallax in pixels of those of the group's matches whose weight is not
-// zero, squared.
+// Appends the squares of `factor` times the parallax in pixels, for the group's matches whose
+// weight is not zero.
 template <class Weight>
 void AppendSquaredParallaxPx(const GroupedMatches& matches, const MatchGroup& group,
                              const std::vector<Weight>& weights, const Pose& pose, double factor,
@@ -118,8 +118,9 @@ Matrix6d ReliableInformation(const GroupedMatches& matches,
       sum += information_of(g);
     }
   }
-  // Each has to be told from zero by those that count already. Never added and taken away again:
-  // the information is of 1 / baseline^2, and near zero rounding would leave nothing else.
+  // Each is added only if those that count already tell its baseline from zero. It is never added
+  // and subtracted again: its information grows as 1 / baseline^2, so near zero the rounding of the
+  // difference would be larger than the rest.
   std::stable_sort(in_question.begin(), in_question.end(),
                    [&](size_t a, size_t b) { return baseline[a] > baseline[b]; });
   for (const size_t g : in_question) {
@@ -137,7 +138,7 @@ bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis,
   if (k == 0 || !information.allFinite()) return false;
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
   const Square reduced = basis.transpose() * information * basis;
-  // Radians and metres are unlike: bring the diagonal to one before judging the rank.
+  // Radians and metres differ in size: scale the diagonal to one before the rank is decided.
   const Eigen::VectorXd diagonal = reduced.diagonal();
   if (!(diagonal.minCoeff() > 0)) return false;
   const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
@@ -194,8 +195,8 @@ double RelativeScaleSigma(const Matrix6d& information, const Pose& pose) {
   const double norm = pose.t.norm();
   if (!(norm > 0)) return std::numeric_limits<double>::infinity();
   const Eigen::Vector3d direction = pose.t / norm;
-  // As CovarianceOfBasis() does, but by a Cholesky factor L where that shows the rank to be full:
-  // the trace of the inverse bounds its largest eigenvalue.
+  // As CovarianceOfBasis(), but with a Cholesky factor L if that shows that the rank is full: the
+  // trace of the inverse bounds its largest eigenvalue.
   const Vector6d scale = information.diagonal().cwiseSqrt().cwiseInverse();
   const Matrix6d scaled = scale.asDiagonal() * information * scale.asDiagonal();
   const Eigen::LLT<Eigen::Matrix<double, 6, 6>> llt(scaled);
@@ -235,7 +236,7 @@ std::string WeakestDirection(const Matrix6d& covariance, const Eigen::Vector3d& 
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(relative);
   Eigen::Matrix<double, 6, 1> weakest =
       unit.cwiseProduct(eigen.eigenvectors().col(5)) * std::sqrt(eigen.eigenvalues()(5));
-  // Either sign is as good: the larger part of t points forward of its own axis.
+  // The sign is arbitrary: the largest component of t is made positive.
   int largest = 3;
   for (int k = 4; k < 6; ++k) {
     if (std::abs(weakest(k)) > std::abs(weakest(largest))) largest = k;

@@ -18,7 +18,7 @@ bool ExceedsChance(const GroupedMatches& matches, const Pose& pose, int num_inli
   double q = 0.0;
   for (const MatchGroup& group : matches.groups()) {
     const PinholeCamera& c = matches.rig().cameras[group.camera2].intrinsics;
-    // Matches beyond the stated size say more of it than the size does.
+    // If matches lie beyond the stated image size, the size is taken from them.
     double width = c.width > 0 ? c.width : std::max(2.0 * std::abs(c.cx), c.fx);
     double height = c.height > 0 ? c.height : std::max(2.0 * std::abs(c.cy), c.fy);
     Eigen::AlignedBox2d extent;
@@ -36,8 +36,8 @@ bool ExceedsChance(const GroupedMatches& matches, const Pose& pose, int num_inli
   matches.Score(pose, kNear * threshold_px, kNoBound, &near);
   matches.Score(pose, kFar * threshold_px, kNoBound, &far);
   q = std::max(q, (far - near) / ((kFar - kNear) * matches.size()));
-  // Matches of chance are denser at the motion that has most of them than next to it: by up to 1.2
-  // times [rigel_benchmark --ransac=hostile]. Their number does not make up for that.
+  // Random matches are denser at the best motion than in the band beside it, by up to 1.2 times
+  // [rigel_benchmark --ransac=hostile]. More matches do not reduce this factor.
   constexpr double kDenser = 1.5;
   q *= kDenser;
   const double share = k / static_cast<double>(n);

@@ -1,4 +1,4 @@
-// Whether so many matches could agree on a motion by chance.
+// Tests whether random matches could agree with a motion as often.
 #ifndef RIGEL_REFINE_SEARCH_CHANCE_H_
 #define RIGEL_REFINE_SEARCH_CHANCE_H_
 
@@ -7,12 +7,15 @@
 
 namespace rigel {
 
-// Random points fall into the band of the threshold around an epipolar line with the probability q
-// of its share of the image. Matches of another motion fall near it more often, and evenly so: what
-// lies between twice and five times the threshold says how often. A fit takes six matches for free,
-// and `num_tries` were tried: true if fewer than one in a thousand such searches among matches that
-// agree on nothing would find so many, by the Chernoff bound on the binomial tail of the others (a
-// contrario, as Moisan and Stival, IJCV 2004).
+// True if `num_inliers` matches are more than chance explains: fewer than one search in a thousand
+// among random matches would find so many. The probability is the Chernoff bound of a binomial
+// tail (a contrario, Moisan and Stival, IJCV 2004).
+//
+// q is the probability that one random match lies within threshold_px (pixels) of its epipolar
+// line: the share of the image that this band takes. Matches of another motion lie near the line
+// more often. So q is at least what the matches between twice and five times the threshold suggest.
+// Six matches are not counted, since any six can be fitted. `num_tries` is the number of motions
+// that were tried.
 bool ExceedsChance(const GroupedMatches& matches, const Pose& pose, int num_inliers,
                    double threshold_px, double num_tries);
 

@@ -8,9 +8,9 @@
 namespace rigel {
 namespace {
 
-// So many matches tell a good hypothesis from a bad one loosely.
+// Matches for the loose score: enough to separate good and bad hypotheses roughly.
 constexpr size_t kSubset = 128;
-// The refinement takes all; until then these are enough.
+// Matches for local optimization: enough until the refinement, which takes all.
 constexpr size_t kOptimized = 300;
 
 }  // namespace
@@ -33,20 +33,9 @@ FramePairSolver::FramePairSolver(const SolverInfo& solver, const GroupedMatches&
       loose_engine_(subset_),
       engine_(optimized_),
       threshold_px_(options.threshold_px) {
-  if (options.score == ScoreKind::kMagsac) {
-    loss_ = MagsacTable(options.threshold_px * options.threshold_px);
-  }
   for (const MatchGroup& group : matches.groups()) {
     if (group.camera1 != group.camera2) intra_only_ = false;
   }
-}
-
-bool FramePairSolver::Draw(Random* random, int* sample) const {
-  for (int k = 0; k < kMaxRedraws; ++k) {
-    const bool drawn = sampler_.Draw(random, sample);
-    if (!drawn || !options_.spread_samples || IsSpread(sample)) return drawn;
-  }
-  return true;
 }
 
 double FramePairSolver::Work(int num_solutions) const {
@@ -56,9 +45,10 @@ double FramePairSolver::Work(int num_solutions) const {
                           kMatch * scored_.size());
 }
 
-// The sum over the subset is too far above its expectation for a score of `best`. Terms are
-// between 0 and t^2: of all sets of so many with this mean those of zeros and t^2 alone scatter
-// most, hypergeometrically, and where few are t^2 with a longer tail than a normal one.
+// True if the sum over the subset is too far above its expectation for a total score of `best`. The
+// terms are between 0 and t^2. Among all sets of terms with this mean, those of only 0 and t^2
+// scatter most. Their sum is hypergeometric; if few terms are t^2, its tail is longer than a normal
+// one.
 bool FramePairSolver::BailsOut(const Model& model, double best) const {
   constexpr double kDeviations = 3.0;
   constexpr double kTerms = 2.0;
@@ -68,7 +58,7 @@ bool FramePairSolver::BailsOut(const Model& model, double best) const {
   const double p = std::min(best / (n * t2), 1.0);
   const double sigma = std::sqrt(m * p * (1.0 - p) * (1.0 - m / n));
   const double limit = t2 * (m * p + kDeviations * sigma + kTerms);
-  return drawn_subset_.Score(model, threshold_px_, limit, nullptr, Loss()) > limit;
+  return drawn_subset_.Score(model, threshold_px_, limit, nullptr) > limit;
 }
 
 bool FramePairSolver::Admit(Model* model) const {
@@ -95,22 +85,6 @@ bool FramePairSolver::LocalOptimize(Model* model) const {
     return false;
   }
   *model = optimized;
-  return true;
-}
-
-// No two matches of a camera pair near one another in the first image.
-bool FramePairSolver::IsSpread(const int* sample) const {
-  const double limit2 = options_.min_sample_distance_px * options_.min_sample_distance_px;
-  for (int i = 0; i < solver_.sample_size; ++i) {
-    const Match& a = matches_.matches()[sample[i]];
-    for (int j = 0; j < i; ++j) {
-      const Match& b = matches_.matches()[sample[j]];
-      if (a.camera1 == b.camera1 && a.camera2 == b.camera2 &&
-          (a.pixel1 - b.pixel1).squaredNorm() < limit2) {
-        return false;
-      }
-    }
-  }
   return true;
 }
 

@@ -1,14 +1,12 @@
-// The solver concept of ransac.h for a frame pair and a solver of the catalogue.
+// A solver of the catalogue on the matches of a frame pair, as Ransac() takes it (ransac.h).
 #ifndef RIGEL_REFINE_SEARCH_FRAME_PAIR_SOLVER_H_
 #define RIGEL_REFINE_SEARCH_FRAME_PAIR_SOLVER_H_
 
-#include <optional>
 #include <vector>
 
 #include "rigel/core/alignment.h"
 #include "rigel/core/grouped_matches.h"
 #include "rigel/core/random.h"
-#include "rigel/core/score_kernel.h"
 #include "rigel/minimal/catalogue.h"
 #include "rigel/minimal/ransac/prosac.h"
 #include "rigel/minimal/ransac/ransac.h"
@@ -34,36 +32,34 @@ class FramePairSolver {
 
   int num_data() const { return scored_.size(); }
   int sample_size() const { return solver_.sample_size; }
-  bool Draw(Random* random, int* sample) const;
+  bool Draw(Random* random, int* sample) const { return sampler_.Draw(random, sample); }
   int MinimalSolver(const int* sample, Solutions* solutions) const {
     prepared_.Prepare(sample, solver_.sample_size);
     return solver_.solve(prepared_, sample, solutions);
   }
   double Work(int num_solutions) const;
-  // Does not look at depths, which only add to the score; the sign of t matters little to it.
+  // Without the depths, which only add to the score. It hardly depends on the sign of t.
   double QuickScore(const Model& model, double bound) const {
-    return scored_.Score(model, threshold_px_, bound, nullptr, Loss());
+    return scored_.Score(model, threshold_px_, bound, nullptr);
   }
   bool BailsOut(const Model& model, double best) const;
   double Score(const Model& model, double bound, int* inliers) const {
-    return scored_.ScoreInFront(model, threshold_px_, bound, inliers, Loss());
+    return scored_.ScoreInFront(model, threshold_px_, bound, inliers);
   }
   bool Admit(Model* model) const;
   bool Similar(const Model& a, const Model& b) const;
   double LooseScore(const Model& model, double bound) const {
     return subset_.Score(model, kLooseFactor * threshold_px_, bound, nullptr);
   }
-  // In two steps, at the loose threshold and at the threshold.
+  // In two steps: at the loose threshold, then at the threshold.
   bool OptimizeLoosely(Model* model) const;
   bool LocalOptimize(Model* model) const;
 
  private:
-  // A motion prior that is off by half a degree moves points by a few pixels.
+  // Times the threshold. A prior with an error of half a degree moves points by a few pixels.
   static constexpr double kLooseFactor = 4.0;
 
-  const LossTable* Loss() const { return loss_.has_value() ? &*loss_ : nullptr; }
-  bool IsSpread(const int* sample) const;
-  // Such matches and a minimal sample hardly determine |t|.
+  // True if |t| of a minimal solution is mostly noise.
   bool ScaleIsNoise(const Model& model) const { return intra_only_ || !model.has_scale; }
   void ResolveSignAndMaybeScale(double threshold, Model* model) const;
   bool OptimizeOn(const GroupedMatches& matches, SmallEngine* engine, double threshold,
@@ -71,7 +67,7 @@ class FramePairSolver {
 
   const SolverInfo& solver_;
   const GroupedMatches& matches_;
-  GroupedMatches scored_subset_;  // empty if all are scored
+  GroupedMatches scored_subset_;  // empty if all matches are scored
   const GroupedMatches& scored_;
   GroupedMatches subset_;
   GroupedMatches drawn_subset_;
@@ -79,7 +75,6 @@ class FramePairSolver {
   mutable PreparedMatches prepared_;
   mutable ProsacSampler sampler_;
   const RansacOptions& options_;
-  std::optional<LossTable> loss_;
   GroupedMatches optimized_;
   mutable SmallEngine loose_engine_;
   mutable SmallEngine engine_;

@@ -20,10 +20,10 @@ std::vector<double> GroupNoiseWeights(const GroupedMatches& matches,
       if (inliers[k]) own.push_back(squared_errors[k]);
     }
     if (own.empty()) continue;
-    // log of the ratio of the noises.
+    // Logarithm of the ratio of the two noise levels.
     const double ratio = 0.5 * std::log(MedianInPlace(&own) / (median_px * median_px));
     const double standard_error = 1.17 / std::sqrt(static_cast<double>(own.size()));
-    // Also false for the infinity of a median of zero.
+    // Also false for infinity, which a median of zero gives.
     if (!(std::abs(ratio) > kGroupNoiseSigmas * standard_error) || !std::isfinite(ratio)) continue;
     weights[g] = std::clamp(std::exp(-ratio), 1.0 / kMaxGroupNoiseRatio, kMaxGroupNoiseRatio);
   }

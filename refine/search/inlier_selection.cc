@@ -11,12 +11,12 @@
 namespace rigel {
 namespace {
 
-// Counts of matches by the logarithm of a number of at most 1, two bins to a factor of two.
+// Histogram of a number of at most 1 by its logarithm, two bins for each factor of two.
 class Histogram {
  public:
   static constexpr int kBins = 96;
   static int Bin(double value) {
-    // floor(2 log2(value)), value = m 2^e with m in [1, 2): from its bits, which are in order.
+    // floor(2 log2(value)) for value = m 2^e with m in [1, 2), from the bits of the number.
     constexpr uint64_t kRoot2Bits = 0x6a09e667f3bcd;
     constexpr int kMantissa = 52, kBias = 1023;
     const double positive = std::max(value, 1e-14);
@@ -30,8 +30,8 @@ class Histogram {
     ++counts_[bin];
     ++total_;
   }
-  // How many there are in three bins about each one, by the mean of those from `below` under it to
-  // `above` over it.
+  // For each bin the expected number in three bins around it: three times the mean of the bins from
+  // `below` under it to `above` over it.
   std::array<double, kBins> Near(int below, int above) const {
     std::array<double, kBins> near;
     for (int bin = 0; bin < kBins; ++bin) {
@@ -58,7 +58,7 @@ class Histogram {
 
 using Numbers = std::array<double, Histogram::kBins>;
 
-// How many inliers but itself an inlier of each bin has near it, and `prior` more.
+// For each bin the number of other inliers near an inlier of the bin, plus `prior`.
 Numbers OtherInliers(const Histogram& in_gate, int below, int above, double prior) {
   Numbers near = in_gate.Near(below, above);
   const double itself = 3.0 / (below + above + 1);
@@ -66,18 +66,18 @@ Numbers OtherInliers(const Histogram& in_gate, int below, int above, double prio
   return near;
 }
 
-// With an inter-camera baseline the parallax is of another size.
+// Intra-camera and inter-camera matches are judged apart, since their parallax differs in size.
 enum Kind { kIntra, kInter };
 
-// Matches in front of the cameras.
+// Matches in front of the cameras, by their error.
 struct Placed {
   std::vector<int> in_gate, in_band;
 };
 
-// Clears `selected` where the parallax, of which `sin2` is the squared sine, says so.
+// Clears `selected` for likely outliers by parallax. `sin2` is the squared sine of the parallax.
 void JudgeByParallax(const Placed& placed, const std::vector<double>& sin2,
                      std::vector<char>* selected) {
-  // Inliers that a place where there is no other is likely to have.
+  // Expected number of inliers near a parallax at which there is no other.
   constexpr double kPrior = 0.1;
   constexpr int kReach = 4;
   if (placed.in_gate.empty() || placed.in_band.empty()) return;
@@ -85,7 +85,7 @@ void JudgeByParallax(const Placed& placed, const std::vector<double>& sin2,
   for (const int k : placed.in_gate) in_gate.Add(Histogram::Bin(sin2[k]));
   for (const int k : placed.in_band) in_band.Add(Histogram::Bin(sin2[k]));
   const double high2 = in_gate.High();
-  // The parallax of inliers ends somewhere: few are above.
+  // Only one bin above: inliers of larger parallax are few.
   const Numbers inliers = OtherInliers(in_gate, kReach, 1, kPrior);
   const Numbers band = in_band.Near(kReach, kReach);
   for (const int k : placed.in_gate) {
@@ -97,26 +97,27 @@ void JudgeByParallax(const Placed& placed, const std::vector<double>& sin2,
   }
 }
 
-// Clears `selected` where the leverage says so.
+// Clears `selected` for likely outliers by leverage.
 void JudgeByLeverage(const GroupedMatches& matches, const Pose& pose, double gate_px,
                      const InlierFit& fit, const std::vector<double>& squared_errors,
                      const Placed (&placed)[2], int num_outliers, std::vector<char>* selected) {
   constexpr double kPrior = 0.02;
   constexpr int kInlierReach = 4;
   constexpr int kReach = 8;
-  // Less does no harm, and where all have much, as among few matches, none stands out: the mean is
-  // parameters over inliers, and twice that is called high (Hoaglin and Welsch 1978). Those of an
-  // eighth of it on have a say in how many there are about it.
+  // A smaller leverage does no harm. With few matches all leverages are large and none stands out.
+  // The mean leverage is parameters over inliers, and twice the mean counts as high (Hoaglin and
+  // Welsch 1978). Matches with at least an eighth of that limit enter the counts.
   constexpr double kHarmless = 0.1;
   constexpr double kMeans = 2.0;
   const int num_members = static_cast<int>(std::count(fit.members.begin(), fit.members.end(), 1));
   const double min_leverage = std::max(kHarmless, kMeans * 6.0 / std::max(num_members, 1));
   constexpr double kMaxLeverage = 0.9999;
-  // Outliers that are in the band, of all: their prior.
+  // Share of all outliers that is expected in the band.
   constexpr double kShareInBand = 0.1;
-  // Histograms end at 1.
+  // Scales h / (1 - h) to the range of the histogram, which ends at 1.
   constexpr double kMaxFactor = 1024.0;
-  // Errors of real matches have longer tails than normal ones: from here on as 1 / deviations^2.
+  // Errors of real matches have longer tails than normal ones: from this squared deviation on the
+  // density falls as 1 / deviations^2.
   constexpr double kTail2 = 9.0;
   const double variance = fit.noise_px * fit.noise_px;
   std::vector<double> leverages(matches.size());
@@ -131,7 +132,7 @@ void JudgeByLeverage(const GroupedMatches& matches, const Pose& pose, double gat
   };
   std::vector<int> judged;
   Histogram in_gate, in_band;
-  // By h / (1 - h), the variance of the others' prediction.
+  // Bins of h / (1 - h), the variance of the prediction by the other matches.
   const auto bin_of = [](double h) { return Histogram::Bin(h / (1.0 - h) / kMaxFactor); };
   for (const Placed& matches_of_kind : placed) {
     for (const int k : matches_of_kind.in_gate) {
@@ -150,11 +151,11 @@ void JudgeByLeverage(const GroupedMatches& matches, const Pose& pose, double gat
   const double prior = kShareInBand * num_outliers * 3.0 / (2 * kReach + 1);
   for (const int k : judged) {
     const double h = leverage_of(k);
-    // Squared residual over variance. What the others predict it to be leaves r / (1 - h), of the
-    // variance sigma^2 / (1 - h), where r is what least squares left.
+    // Squared residual over variance. The error of the prediction by the other matches is
+    // r / (1 - h) for the residual r of least squares. Its variance is sigma^2 / (1 - h).
     const double s = fit.weights[k] * fit.weights[k] * squared_errors[k] / variance;
     const double deviations2 = fit.members[k] && fit.is_minimum ? s / (1.0 - h) : s * (1.0 - h);
-    // Densities of the deviation: uniform in pixels on both sides, and normal.
+    // Densities of the deviation: outliers are uniform in pixels on both sides, inliers normal.
     const int bin = bin_of(h);
     const double per_px = (band[bin] + prior) / (2.0 * (kBandEnd - kBandBegin) * gate_px);
     const double as_outlier = per_px * fit.noise_px / (fit.weights[k] * std::sqrt(1.0 - h));
@@ -177,7 +178,7 @@ int SelectPlausibleInliers(const GroupedMatches& matches, const Pose& pose, doub
   inliers->resize(n);
   Placed placed[2];
   for (Placed& kind : placed) {
-    // One more than there are: what is none of them is overwritten.
+    // One entry more, so that the loop below can write each match and overwrite those not kept.
     kind.in_gate.resize(n + 1);
     kind.in_band.resize(n + 1);
   }

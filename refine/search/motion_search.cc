@@ -11,7 +11,7 @@
 namespace rigel {
 namespace {
 
-// One solver's run and what there is to say of it.
+// The RANSAC run of one solver.
 class Attempt {
  public:
   Attempt(const SolverInfo& solver, const Alignment& alignment, const GroupedMatches& matches,
@@ -26,11 +26,11 @@ class Attempt {
   bool Done() const { return run_.Done(); }
   const RansacResult<Solution>& result() const { return run_.result(); }
 
-  // At most so many iterations, which are taken off the budget.
+  // Makes at most `iterations`, and subtracts them from the budget.
   void Advance(int iterations, int* budget) {
     *budget -= run_.Advance(std::min(iterations, *budget));
   }
-  // Optimizes the best of what was drawn since the last call.
+  // Optimizes the best hypotheses, unless nothing was drawn since the last call.
   void Settle() {
     if (settled_at_ == result().iterations) return;
     settled_at_ = result().iterations;
@@ -44,7 +44,7 @@ class Attempt {
   int settled_at_ = 0;
 };
 
-// The share of the matches that are of camera pairs from which the solver can draw.
+// The share of the matches from whose camera pairs the solver can draw.
 double Coverage(const SolverInfo& solver, const GroupedMatches& matches) {
   if (solver.sampling != SampleKind::kOnePairPlusOne) return 1.0;
   int covered = 0;
@@ -66,7 +66,7 @@ std::string WhyNoSample(const SolverInfo& solver) {
   return "there is no sample";
 }
 
-// Of so many matches' camera pairs 5pt+1 can draw: the solvers after it are not needed.
+// If 5pt+1 can draw from this share of the matches, the solvers after it are not needed.
 constexpr double kEnoughCoverage = 0.5;
 
 class Search {
@@ -111,7 +111,7 @@ class Search {
     return false;
   }
 
-  // To its end, or that of the budget.
+  // Runs solver k to its end, or to that of the budget.
   void Conclude(size_t k) {
     attempts_[k]->Advance(budget_, &budget_);
     attempts_[k]->Settle();
@@ -122,9 +122,9 @@ class Search {
                      options_.threshold_px);
   }
 
-  // A few iterations of each until the motion of one gives no cause for doubt, which then is
-  // concluded. False if there is none. Those that need no prior come right after the first of
-  // those that do: of several that a prior allows all are wrong where it is.
+  // Makes a few iterations of each solver until a motion is not doubtful, and runs its solver to
+  // the end. False if there is none. Solvers without a prior come right after the first one with a
+  // prior: if the prior is wrong, all solvers that use it fail.
   bool Probe() {
     std::vector<size_t> order, later;
     for (size_t k = 0; k < solvers_.size(); ++k) {
@@ -168,8 +168,8 @@ class Search {
     return best;
   }
 
-  // The same, but that of a solver without a prior where it is about as good as one that speaks
-  // against its prior.
+  // The best, unless its motion deviates from its prior and a solver without a prior has about as
+  // good a motion: then that solver.
   int Choice() const {
     constexpr double kAlike = 1.02;  // scores of one motion by two solvers
     const int best = Best();
@@ -187,7 +187,7 @@ class Search {
   }
 
   void TakeTurns() {
-    // Of the constrained ones that with the best score, or the first.
+    // The constrained solver with the best score, or the first.
     int constrained = -1;
     for (size_t k = 0; k < attempts_.size(); ++k) {
       if (attempts_[k] == nullptr || !attempts_[k]->NeedsPrior()) continue;
@@ -217,7 +217,7 @@ class Search {
     for (const size_t k : live) attempts_[k]->Settle();
   }
 
-  // The work of all is used up, or the search was stopped.
+  // True if the work of all solvers is used up or the search was stopped.
   bool Exhausted() const {
     double work_us = 0.0;
     for (const auto& attempt : attempts_) {
@@ -226,7 +226,7 @@ class Search {
     return !(work_us < options_.max_work_us) || stop_->Asked();
   }
 
-  // Nothing better is to be expected of the others.
+  // True if the other solvers are not expected to find a better motion than solver k.
   bool Decides(int k) const {
     if (k < 0 || !attempts_[k]->Done()) return false;
     return !attempts_[k]->NeedsPrior() || !DoubtOf(*attempts_[k]).SaysWrong();

@@ -16,15 +16,15 @@ constexpr int kMaxLengths = 12;
 constexpr double kStep = 3.0;
 constexpr double kHopeless = 0.7;
 constexpr double kFar = 1000.0;
-// The rotation found with a wrong |t| is off by a few sigma.
+// Times the threshold: the rotation that was found with a wrong |t| has an error of a few sigma.
 constexpr double kLooseFactor = 4.0;
 
-// So many tell one minimum from another, and so many where the minima are.
+// Matches to compare the minima, and matches to find them roughly.
 constexpr size_t kSubset = 200;
 constexpr size_t kCoarseSubset = 100;
-// So many lengths are followed to their minima.
+// Number of lengths that are optimized to their minima.
 constexpr size_t kPolished = 3;
-// And of these only with a score that so large a share of outliers makes.
+// Largest difference of their scores to the best, as a share of outliers.
 constexpr double kInReach = 0.1;
 
 struct Candidate {
@@ -58,7 +58,7 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
   std::vector<char> mask;
   const std::vector<double> all(coarse.size(), 1.0);
 
-  // Shortest first, in the end one so long that the arms do not matter.
+  // The shortest first. The last is so long that the arms do not matter.
   std::vector<double> lengths;
   const double share = coarse.size() / static_cast<double>(matches.size());
   for (int k = 0; k < kMaxLengths; ++k, length *= kStep) {
@@ -84,7 +84,7 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
     return solver->Minimize(options, mask, motion);
   };
 
-  // From each length loosely, then from the best few of these and from the longest in full.
+  // From each length roughly, then from the best few and from the longest to the minimum.
   std::vector<Candidate> candidates;
   const auto polish = [&](Candidate* candidate) {
     for (int pass = 0; pass < 2; ++pass) {
@@ -106,7 +106,8 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
   const double start_score = score_of(subset, *pose);
   Candidate longest = from_length(lengths.back());
   polish(&longest);
-  // Where one without arms and a start that has them fit alike, the arms tell nothing.
+  // If the longest fits as well as the start, the arms do not determine |t|: the others are
+  // skipped.
   const bool within = lengths.size() > 1 && norm <= lengths[lengths.size() - 2];
   if (!within || std::abs(start_score - longest.score) >= outlier) {
     for (size_t k = 0; k + 1 < lengths.size(); ++k) candidates.push_back(from_length(lengths[k]));
@@ -121,7 +122,7 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
   candidates.resize(kept);
   for (Candidate& candidate : candidates) polish(&candidate);
   candidates.push_back(longest);
-  // The start takes its place among the lengths; longest first.
+  // With the start as one of the candidates; the longest first.
   candidates.push_back({norm, start_score, *pose});
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& x, const Candidate& y) { return x.length > y.length; });
@@ -132,7 +133,7 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
     best = candidate.score;
     found = candidate.motion;
   }
-  // What the subset prefers must not be worse for all.
+  // The best of the subset must not be worse for all matches.
   if (found.t == pose->t || !(score_of(matches, found) < score_of(matches, *pose) + outlier)) {
     return false;
   }

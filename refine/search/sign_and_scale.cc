@@ -7,12 +7,12 @@ namespace rigel {
 namespace {
 
 constexpr int kMaxScaleSteps = 8;
-// So much longer than the arms that they turn no baseline by an angle that matters.
+// Times the largest arm: at this length the arms hardly change the direction of a baseline.
 constexpr double kFar = 1000.0;
 
-// At least this share of the matches that can tell must lie in front of their cameras.
+// At least this share of the decided matches must lie in front of their cameras.
 constexpr double kMinShareInFront = 0.6;
-// Fewer decided matches than this share say nothing.
+// With fewer decided matches than this share nothing is decided.
 constexpr double kMinShareDecided = 0.05;
 
 bool Enough(const DepthCounts& counts, int looked_at) {
@@ -34,8 +34,8 @@ DepthCounts CountAll(const GroupedMatches& matches, double threshold_px, const P
   return counts;
 }
 
-// The mean of the unit baselines of the camera pairs, each with the sign that its matches want and
-// weighted by their number; zero if nothing is decided.
+// The mean of the unit baselines of the camera pairs, each with the sign that its matches support,
+// weighted by their number. Zero if nothing is decided.
 Eigen::Vector3d SignedMeanBaseline(const GroupedMatches& matches, double threshold_px,
                                    const Pose& pose) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -65,7 +65,7 @@ bool ResolveSign(const GroupedMatches& matches, double threshold_px, Pose* pose)
   if (!Enough(counts, matches.size())) return true;
   if (counts.behind > counts.in_front) {
     pose->t = -pose->t;
-    // The arms do not flip with t, so the depths have to be looked at again.
+    // The arms do not flip with t, so the depths are counted again.
     counts = CountAll(matches, threshold_px, *pose);
     if (!Enough(counts, matches.size())) return true;
   }

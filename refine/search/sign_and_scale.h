@@ -1,10 +1,11 @@
-// The sign of t by cheirality, and a start for |t| where the matches hardly determine it.
+// The sign of t by cheirality, and a start for |t| if the matches hardly determine it.
 //
-// Epipolar errors do not see the sign of t where scale is not observable. Worse, intra-camera
-// matches tell of |t| only through the arms R s - s of cameras off the body's origin, and a minimal
-// sample's |t| is mostly noise. Where it is so small that the arms decide, there are false minima:
-// the baseline R s - s + t of one camera points along its true one and that of another against it,
-// which costs nothing in epipolar error (forward motion with yaw). Depths tell them apart.
+// If scale is not observable, epipolar errors do not depend on the sign of t. Intra-camera matches
+// determine |t| only through the arms R s - s of cameras off the body's origin, so the |t| of a
+// minimal sample is mostly noise. If |t| is so small that the arms dominate, there are false
+// minima. The baseline R s - s + t of one camera then points along its true one, and that of
+// another against it, without any epipolar error (for example in forward motion with yaw). Only the
+// depths of the points tell such minima from the true one.
 #ifndef RIGEL_REFINE_SEARCH_SIGN_AND_SCALE_H_
 #define RIGEL_REFINE_SEARCH_SIGN_AND_SCALE_H_
 
@@ -13,19 +14,18 @@
 
 namespace rigel {
 
-// As many matches tell (EvenSubset): both functions look at all that they get.
+// Matches that are enough (EvenSubset). Both functions look at all matches that they are given.
 inline constexpr size_t kSignSubset = 100;
 
-// Flips t if the matches that fit lie behind their cameras. Counts those with a parallax that noise
-// cannot make (twice the threshold). False
-// if they contradict either sign, so that the motion is physically impossible; where nothing can be
-// decided (no parallax) that is true, and t as it was.
+// Flips t if most matches that fit lie behind their cameras. Only matches with a larger parallax
+// than noise can make (twice the threshold) count. False if the matches contradict both signs: the
+// motion is physically impossible. If nothing can be decided (no parallax), true and t unchanged.
 bool ResolveSign(const GroupedMatches& matches, double threshold_px, Pose* pose);
 
-// Chooses among t times +-4^k, k = 0..8, and the mean direction of the cameras' baselines, each
-// with the sign that its own matches want, at the same lengths: the one of least truncated squared
-// Sampson error in which a match behind a camera counts as an outlier. Too large a |t| does no
-// harm where scale is not observable.
+// Chooses t among +-4^k t, k = 0..8, and the mean direction of the cameras' baselines at the same
+// lengths. In the mean each baseline has the sign that its own matches support. The score is the
+// truncated squared Sampson error, with matches behind a camera as outliers. Too large a |t| does
+// no harm if scale is not observable.
 void ResolveSignAndScale(const GroupedMatches& matches, double threshold_px, Pose* pose);
 
 }  // namespace rigel

@@ -110,7 +110,13 @@ std::vector<rigel::Match> MakeMatches(const rigel::Rig& rig, const rigel::Pose& 
   return matches;
 }
 
-rigel::EstimateOptions MakeOptions(Bytes* bytes) {
+// Of EstimateMotion(), and of Refine() by itself.
+struct Options {
+  rigel::EstimateOptions estimate;
+  rigel::RefineOptions refine;
+};
+
+Options MakeOptions(Bytes* bytes) {
   rigel::EstimateOptions options;
   const std::vector<rigel::SolverInfo>& catalogue = rigel::SolverCatalogue();
   const int solver = bytes->Choice(static_cast<int>(catalogue.size()) + 4);
@@ -134,13 +140,14 @@ rigel::EstimateOptions MakeOptions(Bytes* bytes) {
   ransac.bail_out = bytes->Chance(220);
   ransac.score =
       static_cast<rigel::ScoreKind>(bytes->Chance(250) ? bytes->Choice(3) : bytes->Int());
-  ransac.spread_samples = bytes->Chance(60);
-  if (bytes->Chance(40)) ransac.min_sample_distance_px = bytes->Double(0, 100);
+  // Of options that are gone: the bytes after them keep their meaning.
+  bytes->Chance(60);
+  if (bytes->Chance(40)) bytes->Double(0, 100);
   if (bytes->Chance(80))
     ransac.num_finalists = bytes->Chance(230) ? bytes->Choice(17) : bytes->Int();
   ransac.seed = bytes->Byte();
 
-  rigel::RefineOptions& refine = options.refine;
+  rigel::RefineOptions refine;
   const auto kind = [bytes](int count) {
     return bytes->Chance(252) ? bytes->Choice(count) : bytes->Int();
   };
@@ -157,19 +164,22 @@ rigel::EstimateOptions MakeOptions(Bytes* bytes) {
   if (bytes->Chance(60)) refine.max_num_iterations = bytes->Chance(230) ? bytes->Byte() : -1;
   refine.scale = static_cast<rigel::ScaleMode>(kind(3));
   if (bytes->Chance(80)) refine.noise_px = bytes->Double(0, 2);
-  return options;
+  options.refine = refine;
+  return {options, refine};
 }
 
 // What came after the first seeds were made: from the last bytes, so that these stay what they are.
 constexpr size_t kTail = 16;
-void AddLaterOptions(Bytes* bytes, rigel::EstimateOptions* options, rigel::MotionPrior* prior) {
+void AddLaterOptions(Bytes* bytes, Options* options, rigel::MotionPrior* prior) {
   static const std::atomic<bool> cancelled = true;
-  if (bytes->Chance(40)) options->time_limit = bytes->Double(0, 0.01);
-  if (bytes->Chance(8)) options->cancel = &cancelled;
+  if (bytes->Chance(40)) options->estimate.time_limit = bytes->Double(0, 0.01);
+  if (bytes->Chance(8)) options->estimate.cancel = &cancelled;
   if (bytes->Chance(40)) options->refine.time_limit = bytes->Double(0, 0.01);
   if (bytes->Chance(8)) options->refine.cancel = &cancelled;
   if (bytes->Chance(40)) options->refine.num_tries = bytes->Double(0, 1e8);
   if (bytes->Chance(40)) options->refine.threshold_px = 0.0;  // auto
+  options->estimate.refine.time_limit = options->refine.time_limit;
+  options->estimate.refine.cancel = options->refine.cancel;
   if (bytes->Chance(100)) prior->forward = Direction(bytes);
 }
 
@@ -191,7 +201,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const size_t tail_size = std::min(kTail, size / 4);
   Bytes bytes(data, size - tail_size);
   Bytes tail(data + (size - tail_size), tail_size);
-  rigel::EstimateOptions options = MakeOptions(&bytes);
+  Options options = MakeOptions(&bytes);
   rigel::FramePair pair;
   pair.rig = MakeRig(&bytes);
   const rigel::Pose motion = MakeMotion(&bytes);
@@ -203,7 +213,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (bytes.Chance(40)) pair.truth = motion;
   pair.matches = MakeMatches(pair.rig, motion, &bytes);
 
-  const rigel::MotionEstimate estimate = rigel::EstimateMotion(options, pair);
+  const rigel::MotionEstimate estimate = rigel::EstimateMotion(options.estimate, pair);
   Require(estimate.status == rigel::EstimateStatus::kSuccess || !estimate.message.empty(),
           "a failure has a message");
   if (estimate.HasMotion()) {

@@ -67,7 +67,7 @@ Expected SumOneByOne(const Problem& problem, const SampsonKernelOptions& options
     sum.cost += 0.5 * rho[0];
     sum.gradient += rho[1] * e * j;
     const double newton = rho[1] + 2.0 * s * rho[2];
-    const bool take = options.curvature == Curvature::kNewton && newton > rho[1] / 3.0;
+    const bool take = newton > rho[1] / 3.0;
     sum.curvature += (take ? newton : rho[1]) * j * j.transpose();
   }
   return sum;
@@ -110,14 +110,13 @@ Expected SumByMotion(const Problem& problem, const SampsonKernelOptions& options
 
 TEST(SampsonKernel, SumsTheResidualsAndJacobiansOfTheMatches) {
   for (const LossKind loss : kLosses) {
-    for (const Curvature curvature : {Curvature::kReweighted, Curvature::kNewton}) {
+    {
       for (int index = 0; index < 20; ++index) {
         SCOPED_TRACE(std::string(LossName(loss)) + ", problem " + std::to_string(index));
         const Problem problem = MakeProblem(index, 40 + 17 * index);
         SampsonKernelOptions options;
         options.loss = loss;
         options.loss_scale = 2.0;
-        options.curvature = curvature;
         const Expected expected = SumOneByOne(problem, options);
         for (const Expected& sum :
              {SumByKernel(problem, options, BestCpuPath()), SumByMotion(problem, options)}) {
@@ -141,7 +140,6 @@ TEST(SampsonKernel, TheCostAloneHasTheSameBits) {
     const MatchGroup& group = problem.matches.groups()[0];
     SampsonKernelOptions options;
     options.loss = loss;
-    options.curvature = Curvature::kNewton;
     MotionNormalEquations all, cost;
     for (const bool derivatives : {true, false}) {
       AddNormalEquations(options, problem.matches, group, problem.matches.Pixels(group),
@@ -194,7 +192,6 @@ TEST(SampsonKernel, EveryPathGivesTheSameBits) {
           problem.matches.Fundamental(group, problem.pose);
       SampsonKernelOptions options;
       options.loss = loss;
-      options.curvature = Curvature::kNewton;
       SampsonSums baseline{}, avx2{};
       SumSampson(options, pixels, problem.weights.data(), F.data(), 1e-20, true, &baseline,
                  CpuPath::kBaseline);
