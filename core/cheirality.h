@@ -16,9 +16,12 @@ struct Depths {
   bool BothPositive() const { return d1 > 0 && d2 > 0; }
 };
 
+// Sine of the parallax below which rays count as parallel: rounding decides what is left of it.
+inline constexpr double kNoParallax = 1e-9;
+
 // The points of closest approach of the two rays under `pose`: least squares of
 // R (s_i + d1 x_i) + t = s_j + d2 x_j. False, and depths left alone, where the rays are parallel
-// (sine of the parallax below 1e-9): such a match has no finite depth.
+// (sine of the parallax below kNoParallax): such a match has no finite depth.
 bool TriangulateDepths(const Pose& pose, const RayPair& rays, Depths* depths);
 
 // Where a match lies under a motion.
@@ -29,7 +32,11 @@ enum class Cheirality {
   kMixed,      // in front of one, behind the other
 };
 
-Cheirality TestCheirality(const Pose& pose, const RayPair& rays, double min_sin_parallax = 1e-9);
+Cheirality TestCheirality(const Pose& pose, const RayPair& rays,
+                          double min_sin_parallax = kNoParallax);
+
+// The vote of a match for a pose against its -t: 1 for kInFront, -1 for kBehind, else 0.
+int CheiralityVote(const Pose& pose, const RayPair& rays);
 
 }  // namespace rigel
 

@@ -3,10 +3,12 @@
 #include <cmath>
 #include <limits>
 
+#include "rigel/core/sampson_terms.h"
+
 namespace rigel {
 
 double GecTripleProduct(const Pose& pose, const RayPair& rays) {
-  const Eigen::Vector3d b = pose.R * rays.ray1.s + pose.t - rays.ray2.s;
+  const Eigen::Vector3d b = Baseline(pose, rays.ray1.s, rays.ray2.s);
   return rays.ray2.x.dot(b.cross(pose.R * rays.ray1.x));
 }
 
@@ -37,7 +39,7 @@ Eigen::Vector3d GecDepthCoefficients(const Eigen::Matrix3d& R, const RayPair& re
 
 Eigen::Matrix3d EssentialMatrix(const Pose& pose, const RigCamera& camera_i,
                                 const RigCamera& camera_j) {
-  const Eigen::Vector3d b = pose.R * camera_i.s + pose.t - camera_j.s;
+  const Eigen::Vector3d b = Baseline(pose, camera_i.s, camera_j.s);
   return camera_j.Q.transpose() * Skew(b) * pose.R * camera_i.Q;
 }
 
@@ -64,12 +66,10 @@ Eigen::Vector3d CentredPixel(const PinholeCamera& camera, const Pixel& pixel) {
 
 double SampsonError(const Eigen::Matrix3d& F, const Eigen::Vector3d& p_i,
                     const Eigen::Vector3d& p_j) {
-  const Eigen::Vector3d Fp = F * p_i;
-  const Eigen::Vector3d Ftp = F.transpose() * p_j;
-  const double gradient2 = Fp.head<2>().squaredNorm() + Ftp.head<2>().squaredNorm();
-  const double C = p_j.dot(Fp);
-  if (gradient2 > 0) return C / std::sqrt(gradient2);
-  return F.isZero(0) || C != 0 ? std::numeric_limits<double>::infinity() : 0.0;
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = F;
+  const SampsonTerms terms = TermsOf(rows.data(), p_i.x(), p_i.y(), p_j.x(), p_j.y());
+  if (terms.gradient2 > 0) return terms.C / std::sqrt(terms.gradient2);
+  return F.isZero(0) || terms.C != 0 ? std::numeric_limits<double>::infinity() : 0.0;
 }
 
 double SampsonError(const Pose& pose, const Rig& rig, const Match& match) {

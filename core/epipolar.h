@@ -17,6 +17,12 @@
 
 namespace rigel {
 
+// b = R s_i + t - s_j: from the centre of camera j at time 2 to that of camera i at time 1, in f2.
+inline Eigen::Vector3d Baseline(const Pose& pose, const Eigen::Vector3d& s_i,
+                                const Eigen::Vector3d& s_j) {
+  return pose.R * s_i + pose.t - s_j;
+}
+
 // C as a triple product; metres (the rays' directions are unit vectors).
 double GecTripleProduct(const Pose& pose, const RayPair& rays);
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include "rigel/core/epipolar.h"
 #include "rigel/core/rig_centre.h"
 
 namespace rigel {
@@ -11,9 +12,8 @@ namespace {
 
 using RowMajor3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-// R s_i + t - s_j: the same sum as in core, for the same bits.
-Eigen::Vector3d Baseline(const Rig& rig, const MatchGroup& group, const Pose& pose) {
-  return pose.R * rig.cameras[group.camera1].s + pose.t - rig.cameras[group.camera2].s;
+Eigen::Vector3d BaselineOf(const MatchGroup& group, const Rig& rig, const Pose& pose) {
+  return Baseline(pose, rig.cameras[group.camera1].s, rig.cameras[group.camera2].s);
 }
 
 // Positions of the matches sorted by camera1, then camera2: where they are not yet, by a stable
@@ -162,7 +162,7 @@ GroupMotion GroupedMatches::MotionOf(const MatchGroup& group, const Pose& pose,
                                      double threshold_px) const {
   GroupMotion motion;
   Eigen::Map<RowMajor3d>(motion.R) = pose.R;
-  Eigen::Map<Eigen::Vector3d>(motion.b) = Baseline(rig_, group, pose);
+  Eigen::Map<Eigen::Vector3d>(motion.b) = BaselineOf(group, rig_, pose);
   const double min_sin_parallax = DecidedParallax(group, threshold_px);
   motion.min_sin2 = min_sin_parallax * min_sin_parallax;
   return motion;
@@ -170,7 +170,7 @@ GroupMotion GroupedMatches::MotionOf(const MatchGroup& group, const Pose& pose,
 
 Eigen::Matrix3d GroupedMatches::Fundamental(const MatchGroup& group, const Pose& pose) const {
   // CentredFundamental() of EssentialMatrix(), with what is the same for all poses made once.
-  const Eigen::Vector3d b = Baseline(rig_, group, pose);
+  const Eigen::Vector3d b = BaselineOf(group, rig_, pose);
   const Eigen::Matrix3d RA = pose.R * unproject_[group.camera1];
   Eigen::Matrix3d bRA;
   for (int k = 0; k < 3; ++k) bRA.col(k) = b.cross(RA.col(k));

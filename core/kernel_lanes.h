@@ -10,7 +10,7 @@ namespace rigel {
 
 // Doubles: one register with AVX2, two without. The same on all machines, so that sums are, too.
 constexpr int kLanes = 4;
-typedef double Lanes __attribute__((vector_size(kLanes * sizeof(double))));
+using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 
 // static and always inlined, so that no copy is shared with code for other processors.
 // By value: a reference to a vector of lower alignment loses it with clang. (Nothing is returned by

@@ -1,10 +1,11 @@
-// What the kernels have in common: a match's epipolar constraint and its gradient by the pixels.
+// A match's epipolar constraint and its gradient by the pixels, for kernels and for single matches.
 //
-// For kernel files alone (cpu_path.h): static and always inlined, so that no copy of it is shared.
+// Included by kernel files (cpu_path.h): static and always inlined, so that no copy of it is
+// shared.
 #ifndef RIGEL_CORE_SAMPSON_TERMS_H_
 #define RIGEL_CORE_SAMPSON_TERMS_H_
 
-#include "rigel/core/kernel_lanes.h"
+#include "rigel/core/cpu_path.h"
 
 namespace rigel {
 

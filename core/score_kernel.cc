@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "rigel/core/depth_terms.h"
+#include "rigel/core/kernel_lanes.h"
 #include "rigel/core/sampson_terms.h"
 
 namespace rigel {
@@ -50,50 +52,25 @@ RIGEL_KERNEL_BODY void Errors(const PixelArrays& block, const double F[9], doubl
   }
 }
 
-// The first ray of a match in the second frame, g = R x1, and n = g x f with its second.
-struct Parallax {
-  double gx, gy, gz;
-  double nx, ny, nz;
-  double sin2;  // |n|^2
-};
-
-RIGEL_KERNEL_BODY Parallax ParallaxOf(const RayArrays& rays, int k, const double R[9]) {
+// The terms of match k for the row-major rotation R and the baseline b.
+RIGEL_KERNEL_BODY DepthTerms TermsOfMatch(const RayArrays& rays, int k, const double R[9],
+                                          const double b[3]) {
   const double x = rays.x1[k], y = rays.y1[k], z = rays.z1[k];
-  const double fx = rays.x2[k], fy = rays.y2[k], fz = rays.z2[k];
-  Parallax p;
-  p.gx = R[0] * x + R[1] * y + R[2] * z;
-  p.gy = R[3] * x + R[4] * y + R[5] * z;
-  p.gz = R[6] * x + R[7] * y + R[8] * z;
-  p.nx = p.gy * fz - p.gz * fy;
-  p.ny = p.gz * fx - p.gx * fz;
-  p.nz = p.gx * fy - p.gy * fx;
-  p.sin2 = p.nx * p.nx + p.ny * p.ny + p.nz * p.nz;
-  return p;
-}
-
-// Signs of the depths of match k, and its parallax: the test of cheirality.cc, and its names.
-RIGEL_KERNEL_BODY void DepthSigns(const RayArrays& rays, int k, const GroupMotion& m, double* n1,
-                                  double* n2, double* sin2) {
-  const double fx = rays.x2[k], fy = rays.y2[k], fz = rays.z2[k];
-  const Parallax p = ParallaxOf(rays, k, m.R);
-  *sin2 = p.sin2;
-  *n1 = (fy * m.b[2] - fz * m.b[1]) * p.nx + (fz * m.b[0] - fx * m.b[2]) * p.ny +
-        (fx * m.b[1] - fy * m.b[0]) * p.nz;
-  *n2 = (p.gy * m.b[2] - p.gz * m.b[1]) * p.nx + (p.gz * m.b[0] - p.gx * m.b[2]) * p.ny +
-        (p.gx * m.b[1] - p.gy * m.b[0]) * p.nz;
+  return DepthTermsOf(R[0] * x + R[1] * y + R[2] * z, R[3] * x + R[4] * y + R[5] * z,
+                      R[6] * x + R[7] * y + R[8] * z, rays.x2[k], rays.y2[k], rays.z2[k], b[0],
+                      b[1], b[2]);
 }
 
 // Sets e to t2 where the match at begin + i lies behind a camera.
 RIGEL_KERNEL_BODY void RejectBehind(const RayArrays& rays, int begin, int size,
                                     const GroupMotion& m, double t2, double e[kBlock]) {
   for (int i = 0; i < Rounded(size); ++i) {
-    double n1, n2, sin2;
-    DepthSigns(rays, begin + i, m, &n1, &n2, &sin2);
+    const DepthTerms depth = TermsOfMatch(rays, begin + i, m.R, m.b);
     const double error = e[i];
-    double kept = n1 > 0 ? error : t2;
-    kept = n2 > 0 ? kept : t2;
+    double kept = depth.n1 > 0 ? error : t2;
+    kept = depth.n2 > 0 ? kept : t2;
     // A NaN of sin2 is undecided.
-    e[i] = sin2 > m.min_sin2 ? kept : error;
+    e[i] = depth.sin2 > m.min_sin2 ? kept : error;
   }
 }
 
@@ -157,7 +134,8 @@ RIGEL_KERNEL_BODY int Select(const PixelArrays& pixels, const RayArrays& rays, c
 
 RIGEL_KERNEL_BODY void AllParallax(const RayArrays& rays, const double R[9], int size,
                                    double* sin2) {
-  for (int k = 0; k < size; ++k) sin2[k] = ParallaxOf(rays, k, R).sin2;
+  const double no_baseline[3] = {0.0, 0.0, 0.0};
+  for (int k = 0; k < size; ++k) sin2[k] = TermsOfMatch(rays, k, R, no_baseline).sin2;
 }
 
 RIGEL_KERNEL_BODY void Count(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
@@ -168,15 +146,19 @@ RIGEL_KERNEL_BODY void Count(const PixelArrays& pixels, const RayArrays& rays, c
     double e[kBlock], sign1[kBlock], sign2[kBlock];
     Errors(block, F, e);
     for (int i = 0; i < Rounded(block.size); ++i) {
-      double sin2;
-      DepthSigns(rays, begin + i, motion, &sign1[i], &sign2[i], &sin2);
-      e[i] = sin2 > motion.min_sin2 ? e[i] : t2;
+      const DepthTerms depth = TermsOfMatch(rays, begin + i, motion.R, motion.b);
+      sign1[i] = depth.n1;
+      sign2[i] = depth.n2;
+      e[i] = depth.sin2 > motion.min_sin2 ? e[i] : t2;
     }
     for (int i = 0; i < block.size; ++i) {
       const int one = e[i] < t2 ? 1 : 0;
       decided += one;
+      // Set above, for Rounded(size) of them.
+      // NOLINTBEGIN(clang-analyzer-core.UndefinedBinaryOperatorResult)
       in_front += sign1[i] > 0 && sign2[i] > 0 ? one : 0;
       behind += sign1[i] < 0 && sign2[i] < 0 ? one : 0;
+      // NOLINTEND(clang-analyzer-core.UndefinedBinaryOperatorResult)
     }
   }
   counts->in_front += in_front;

@@ -623,10 +623,10 @@ Eigen::Vector3d FittedPoint(const RefineOptions& options, const MotionPrior& pri
   return UsesBodyLength(options, prior) ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : RigCentre(rig);
 }
 
-RefineSummary RefineAbout(const RefineOptions& given, const GroupedMatches& matches,
+RefineSummary RefineAbout(const RefineOptions& options, const GroupedMatches& matches,
                           const Eigen::Vector3d& origin, const MotionPrior& prior, Pose* pose) {
-  RefineOptions options = given;
-  options.threshold_px = ThresholdPx(given.threshold_px, matches.rig());
+  RefineOptions resolved = options;
+  resolved.threshold_px = ThresholdPx(options.threshold_px, matches.rig());
   // The rig's centre in the frame of `matches`, or the body's origin.
   const Eigen::Vector3d step =
       UsesBodyLength(options, prior) ? Eigen::Vector3d(-origin) : RigCentre(matches.rig());
@@ -637,9 +637,9 @@ RefineSummary RefineAbout(const RefineOptions& given, const GroupedMatches& matc
   const bool there = step.norm() <= kRounding * (size + origin.norm());
   const Eigen::Vector3d point = there ? origin : Eigen::Vector3d(origin + step);
   Pose result = MotionOfPoint(*pose, point);
-  const RefineSummary summary =
-      there ? Refiner(options, matches, point, prior).Run(&result)
-            : Refiner(options, matches.WithOrigin(step), point, prior).Run(&result);
+  RefineSummary summary =
+      there ? Refiner(resolved, matches, point, prior).Run(&result)
+            : Refiner(resolved, matches.WithOrigin(step), point, prior).Run(&result);
   if (summary.IsSolutionUsable()) *pose = MotionOfBody(result, point);
   return summary;
 }

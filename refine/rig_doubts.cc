@@ -96,8 +96,9 @@ std::optional<int> InliersIfSwapped(const FramePair& pair, int num_inliers, cons
 std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, ScaleMode scale, bool prior_is_doubted,
                                     const RefineSummary& refine,
                                     const std::function<int(const FramePair&)>& inliers_with) {
-  std::vector<RigDoubt> doubts;
   const std::vector<int> frozen = FrozenCameras(pair);
+  std::vector<RigDoubt> doubts;
+  doubts.reserve(frozen.size());
   const auto is_frozen = [&](int camera) {
     return std::find(frozen.begin(), frozen.end(), camera) != frozen.end();
   };
@@ -139,7 +140,7 @@ std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, ScaleMode scale, bool
     }
     // Also two cameras that no match connects.
     for (const int other : few_by_themselves) {
-      if (fits.count({other, cameras.first}) == 0) to_swap.push_back({other, cameras.first});
+      if (fits.count({other, cameras.first}) == 0) to_swap.emplace_back(other, cameras.first);
     }
     few_by_themselves.push_back(cameras.first);
   }

@@ -29,12 +29,13 @@ SOLVERS = {
 # The outermost function of an inlined chain that is listed decides.
 STEPS = [
     ('motions', r'AddSolution|PolishSixPoint|::Polish\(|::Add\(|AddPolished|ExpSO3|NullVector|'
-                r'SolveSixBySix|EliminateColumn'),
+                r'SolveSixBySix|EliminateColumn|SixPointStep|PivotCompletely'),
     ('roots', r'RealRoots|CubicStarts|PolishRoots|RealSolutions|RootFinder|RootsInClosedForm|'
               r'Isolated|Newton|Bracket|Hessenberg|CharacteristicPoly|SolveAll|'
               r'PrepareAvx2|PrepareBaseline'),
     ('elimination', r'Determinant|AddMinors|MakeEquations|CombineRows|MacaulayMatrix|AddProduct|'
-                    r'AddBilinear|RealRotations|operator\(\)'),
+                    r'AddBilinear|DepthRows|AddQuartics|AddSextics|Minors?\(|BringPivotTo|'
+                    r'RealRotations|operator\(\)'),
     ('set-up', r'SetFourPoint|SetPlanar|SetReference|SetRow|DirectSample|SixPointSystem|MakeRow')]
 OPERATIONS = [('add', r'v?(add|sub)([sp])d'), ('mul', r'v?mul([sp])d'), ('div', r'v?div([sp])d'),
               ('sqrt', r'v?sqrt([sp])d')]

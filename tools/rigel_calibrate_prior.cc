@@ -1,10 +1,7 @@
 // rigel_calibrate_prior: motion plane and mounting of the IMU from the motions of match files.
 #include <algorithm>
-#include <filesystem>
 #include <functional>
 #include <iostream>
-#include <map>
-#include <set>
 #include <utility>
 
 #include <gflags/gflags.h>
@@ -12,185 +9,124 @@
 #include "rigel/core/body_axes.h"
 #include "rigel/core/rig_centre.h"
 #include "rigel/problems/calibration/calibration_report.h"
-#include "rigel/problems/evaluation/batch.h"
 #include "rigel/problems/io/match_file.h"
-#include "rigel/problems/io/match_header.h"
-#include "rigel/problems/io/table.h"
-#include "rigel/problems/io/whole_file.h"
-#include "rigel/refine/solver_choice.h"
+#include "rigel/tools/calibrated_files.h"
+#include "rigel/tools/estimate_files.h"
 #include "rigel/tools/estimation_flags.h"
+#include "rigel/tools/estimation_messages.h"
+#include "rigel/tools/outputs.h"
 #include "rigel/tools/tool.h"
 
-DEFINE_string(solver, "5pt+1", "name of the minimal solver, or auto; 5pt+1 needs no prior");
-DEFINE_string(lines, "normal",
-              "what is calibrated, comma separated: normal (of the motion plane), axis (the same "
-              "direction as rotation axis), gravity (the rotation from the frame of the stated "
-              "gravity to the body)");
-DEFINE_string(output, "",
-              "write copies of the match files with the calibrated lines to this directory, made "
-              "if missing; one with match files other than those of an earlier run is refused");
-DEFINE_bool(in_place, false, "write the calibrated lines into the match files themselves");
-DEFINE_string(json, "",
-              "write the calibration (format rigel-prior-calibration 1) to this file; - is stdout");
+DEFINE_string(solver, "5pt+1", "minimal solver of RANSAC, or auto; 5pt+1 needs no prior");
+DEFINE_string(
+    lines, "normal",
+    "lines to calibrate, comma separated: normal (of the motion plane), axis (of rotation, along "
+    "the same direction) and gravity (by the rotation from the frame of the IMU to the body)");
+DEFINE_string(
+    output, "",
+    "write copies of the match files with calibrated lines to this directory, which is created "
+    "if missing. It must not hold match files other than those of an earlier run");
+DEFINE_bool(in_place, false, "write the calibrated lines to the match files themselves");
+DEFINE_string(
+    json, "",
+    "write the calibration as JSON (format rigel-prior-calibration 1, docs/formats.md) to this "
+    "file; - is stdout");
 
 namespace rigel {
 namespace {
 
 constexpr char kUsage[] =
-    "rigel_calibrate_prior: the motion plane and the mounting of an IMU from a clip's motions.\n"
+    "rigel_calibrate_prior: calibrates the motion plane and the mounting of an IMU of a vehicle.\n"
     "\n"
     "  rigel_calibrate_prior --matches=DIR --lines=normal,axis --output=CALIBRATED\n"
     "  rigel_compare --matches=CALIBRATED --solvers=3pt --prior=file\n"
     "\n"
-    "Estimates the motion of each match file of one vehicle and from them all the normal of the\n"
-    "plane that it moves in, starting from the files' normal or the body's down, and the rotation\n"
-    "that turns the stated gravity into the body frame. What the motions do not determine is said\n"
-    "and left as it was: a drive straight ahead says nothing of the plane's roll, and without\n"
-    "turns nothing of the IMU's mounting. Files are replaced whole, all new ones written before "
-    "the\n"
-    "first takes its place, their other lines and comments untouched; what a killed run had not "
-    "put\n"
-    "in its place is finished by the next. A comment line tells the calibrated ones; input of "
-    "which\n"
-    "only a part is calibrated is refused.\n";
+    "All match files must be of one vehicle. From their estimated motions it determines the\n"
+    "normal of the plane in which the vehicle moves, starting at the files' normal or at the\n"
+    "body's down, and the rotation from the frame of the stated gravity to the body frame. A\n"
+    "part that the motions do not determine is reported and left unchanged: driving straight\n"
+    "does not determine the roll of the plane, and without turns the mounting of the IMU is not\n"
+    "determined.\n"
+    "\n"
+    "With --output or --in_place the calibrated lines are written; all other lines stay the\n"
+    "same, and a comment marks a calibrated file. All new files are written before the first one\n"
+    "replaces an old one. If a run is killed while they do, the next run with --in_place\n"
+    "finishes it. Input of which only some files are calibrated is an error.\n";
 
-struct Lines {
-  bool normal = false;
-  bool axis = false;
-  bool gravity = false;
-
-  bool Plane() const { return normal || axis; }
+struct Settings {
+  ComparisonOptions options;
+  CalibratedLines lines;
 };
 
-bool ParseLines(const std::string& text, Lines* lines) {
-  const std::vector<std::string> names = SplitCommas(text);
-  for (const std::string& name : names) {
-    bool* const line = name == "normal"    ? &lines->normal
-                       : name == "axis"    ? &lines->axis
-                       : name == "gravity" ? &lines->gravity
-                                           : nullptr;
-    if (line == nullptr) return false;
-    *line = true;
+std::vector<OutputFlag> Outputs() { return {{"json", FLAGS_json}}; }
+
+bool WritesFiles() { return FLAGS_in_place || !FLAGS_output.empty(); }
+
+bool SettingsFromFlags(Settings* settings, std::string* error) {
+  ComparisonOptions& options = settings->options;
+  if (!OptionsFromFlags(&options, error)) return false;
+  if (!ParseLines(FLAGS_lines, &settings->lines)) {
+    return WrongValue("lines", FLAGS_lines, "some of normal, axis, gravity", error);
   }
-  return !names.empty();
+  if (!SolverFromFlag(FLAGS_solver, &options.estimate, error)) return false;
+  if (!options.estimate.refine_motion) {
+    return Refuse("--refine=none: a calibration needs refined motions", error);
+  }
+  if (settings->lines.gravity && options.prior.source != PriorSource::kFile) {
+    return Refuse("--lines=gravity: needs --prior=file, the gravity that the files state", error);
+  }
+  if (FLAGS_in_place && !FLAGS_output.empty()) {
+    return Refuse("--in_place and --output: expected one of them", error);
+  }
+  if (IsGiven("shard")) return Refuse("--shard: a calibration needs all files", error);
+  if (WritesFiles() && ReadsStdin()) {
+    return Refuse(
+        "--matches=-: stdin cannot be written to; leave out --in_place and --output to read it",
+        error);
+  }
+  return OutputsDiffer(Outputs(), error);
 }
 
-// The lines that are calibrated.
-std::vector<std::string> Names(const Lines& lines) {
-  std::vector<std::string> names;
-  if (lines.normal) names.push_back("normal");
-  if (lines.axis) names.push_back("axis");
-  if (lines.gravity) names.push_back("gravity");
-  return names;
+// What would be refused at the end is refused before the work. Returns an exit code.
+int CheckFiles(const CalibratedLines& lines, const std::vector<std::string>& paths) {
+  std::string error;
+  if (!SameMarks(paths, lines, &error)) return Failure(error);
+  if (!WritesFiles()) return kExitDone;
+  const std::vector<std::string> targets = Targets(paths, FLAGS_output, &error);
+  if (targets.empty()) return Failure(error);
+  const bool json_is_one =
+      std::any_of(targets.begin(), targets.end(),
+                  [](const std::string& target) { return SameOutputFile(target, FLAGS_json); });
+  if (!json_is_one) return kExitDone;
+  return UsageError("--json=" + FLAGS_json + ": a match file goes to this file; name another");
 }
 
-// Whether all files were calibrated by the same run, or none. An interrupted run leaves a part, and
-// with it no calibration would be that of all.
-bool SameMarks(const std::vector<std::string>& paths, const std::string& line, std::string* error) {
-  std::set<std::string> marks;
-  size_t marked = 0;
-  for (const std::string& path : paths) {
-    const std::string mark = FindHeaderComment(path, CalibrationMark(line));
-    if (mark.empty()) continue;
-    marks.insert(mark);
-    ++marked;
-  }
-  if (marked == 0 || (marked == paths.size() && marks.size() == 1)) return true;
-  const std::string what =
-      marked < paths.size()
-          ? std::to_string(marked) + " of " + std::to_string(paths.size()) +
-                " files are calibrated already, the others are not"
-          : "the files were calibrated by " + std::to_string(marks.size()) + " different runs";
-  *error = "--lines=" + line + ": " + what + " (line '" + CalibrationMark(line) +
-           "'), as an interrupted run leaves them; begin again with the files as they were before";
-  return false;
+// What is left of a file.
+struct Estimated {
+  CalibrationMotion motion;
+  Rig rig;
+  std::string failure;  // empty if there is a refined motion
+};
+
+Estimated Keep(const FramePair& pair, const MotionEstimate& estimate) {
+  const RefineSummary& refine = estimate.refine;
+  const bool refined = estimate.status == EstimateStatus::kSuccess && refine.IsSolutionUsable();
+  // Any point of a body in planar motion will do. The rig's centre is the one that the matches
+  // say most of.
+  return {{MotionOfPoint(estimate.pose, RigCentre(pair.rig)), refined && refine.rotation_observable,
+           refined && refine.rig_translation_observable, pair.prior},
+          pair.rig,
+          refined ? "" : FailureMessage(pair, FLAGS_solver, estimate.message)};
 }
 
-// All marks of calibrations in a file.
-std::string Marks(const std::string& path) {
-  std::string marks;
-  for (const char* line : {"normal", "axis", "gravity"}) {
-    marks += FindHeaderComment(path, CalibrationMark(line)) + "\n";
-  }
-  return marks;
-}
-
-// A run with --in_place that was killed while its files took their places had written all of them:
-// those that did not get there yet do it now.
-void FinishInterruptedRun(const std::vector<std::string>& paths) {
-  std::set<std::string> in_place;
-  for (const std::string& path : paths) in_place.insert(Marks(path));
-  int finished = 0;
-  for (const std::string& path : paths) {
-    const bool done = FinishLeftOver(path, [&](const std::string& temporary) {
-      const std::string marks = Marks(temporary);
-      FramePair pair;
-      std::string ignored;
-      return marks != Marks(path) && in_place.count(marks) > 0 &&
-             ReadMatchFile(temporary, &pair, &ignored);
-    });
-    finished += done ? 1 : 0;
-  }
-  if (finished == 0) return;
-  std::cerr << "an interrupted run is finished: " << finished << " of " << paths.size()
-            << " files take their places\n";
-}
-
-// Match files in --output that this run does not overwrite, or that are not the program's own
-// work. In byte order.
-std::set<std::string> OtherMatchFiles(const std::set<std::string>& targets, std::error_code* code) {
-  namespace fs = std::filesystem;
-  std::set<std::string> others;
-  fs::directory_iterator entry(FLAGS_output, *code);
-  for (; !*code && entry != fs::directory_iterator(); entry.increment(*code)) {
-    const std::string path = entry->path().string();
-    std::error_code ignored;
-    if (!IsMatchFileName(entry->path().filename().string()) || entry->is_directory(ignored)) {
-      continue;
-    }
-    const bool own = targets.count((fs::path(FLAGS_output) / entry->path().filename()).string()) &&
-                     !FindHeaderComment(path, "# rigel_calibrate_prior").empty();
-    if (!own) others.insert(entry->path().filename().string());
-  }
-  return others;
-}
-
-// Where each file is written to; empty with a message if two would be one, one its own source, or
-// the files of --output not all of this run.
-std::vector<std::string> Targets(const std::vector<std::string>& paths, std::string* error) {
-  namespace fs = std::filesystem;
-  if (FLAGS_in_place) return paths;
-  std::error_code code;
-  std::vector<std::string> targets;
-  std::set<std::string> seen;
-  for (const std::string& path : paths) {
-    targets.push_back((fs::path(FLAGS_output) / fs::path(path).filename()).string());
-    if (!seen.insert(targets.back()).second) {
-      *error = PrintablePath(path) + ": another file has the same name, both would be " +
-               PrintablePath(targets.back());
-      return {};
-    }
-    if (fs::equivalent(path, targets.back(), code)) {
-      *error = PrintablePath(path) + ": --output would overwrite it; use --in_place for that";
-      return {};
-    }
-  }
-  if (!fs::is_directory(FLAGS_output, code)) return targets;
-  code.clear();
-  const std::set<std::string> others = OtherMatchFiles(seen, &code);
-  if (code) {
-    *error = PrintablePath(FLAGS_output) + ": cannot be listed: " + code.message();
-    return {};
-  }
-  if (!others.empty()) {
-    *error = PrintablePath(FLAGS_output) + ": holds " + PrintablePath(*others.begin()) +
-             (others.size() > 1 ? " and " + std::to_string(others.size() - 1) + " more" : "") +
-             ", which this run does not overwrite and which would be read as if it were of this "
-             "run; empty the directory or name another";
-    return {};
-  }
-  return targets;
-}
+// What the files of a vehicle say.
+struct Clip {
+  std::vector<FramePair> pairs;
+  std::vector<CalibrationMotion> motions;
+  std::vector<AppliedAxes> axes;
+  Rig rig;  // of the first pair
+  std::vector<std::string> failures;
+};
 
 // Whether the cameras are the same but for where they sit, which rigel_simulate draws anew for each
 // pair.
@@ -202,6 +138,24 @@ bool SameCameras(const Rig& a, const Rig& b) {
                       return c1.fx == c2.fx && c1.fy == c2.fy && c1.cx == c2.cx && c1.cy == c2.cy &&
                              c1.width == c2.width && c1.height == c2.height;
                     });
+}
+
+// False with a message if the files are not of one vehicle.
+bool Gather(std::vector<BatchItem<Estimated>> items, Clip* clip, std::string* error) {
+  for (BatchItem<Estimated>& item : items) {
+    if (!item.result.failure.empty()) clip->failures.push_back(item.result.failure);
+    if (clip->pairs.empty()) clip->rig = item.result.rig;
+    if (!SameCameras(clip->rig, item.result.rig)) {
+      return Refuse("the files are not of one vehicle: cameras differ between " +
+                        PrintablePath(clip->pairs.front().name) + " and " +
+                        PrintablePath(item.pair.name),
+                    error);
+    }
+    clip->pairs.push_back(std::move(item.pair));
+    clip->axes.push_back(item.axes);
+    clip->motions.push_back(item.result.motion);
+  }
+  return true;
 }
 
 // What --down says, else the normal that all files state, else what the cameras suggest: that is
@@ -226,212 +180,63 @@ Eigen::Vector3d Start(const ComparisonOptions& options, const std::vector<FrameP
   return axes.down;
 }
 
-// Whether all files have these marks already and the calibration turns nothing: after a run that
-// was killed at its end, too.
-bool AlreadyCalibrated(const std::map<std::string, std::string>& marks,
-                       const std::vector<FramePair>& pairs) {
-  return std::all_of(marks.begin(), marks.end(), [&](const auto& mark) {
-    const auto& [words, line] = mark;
-    return line == words + " turned by " + FormatNumber(0.0, 6) + " deg" &&
-           std::all_of(pairs.begin(), pairs.end(), [&words = words](const FramePair& pair) {
-             return !FindHeaderComment(pair.name, words).empty();
-           });
-  });
-}
-
-bool WriteFiles(const CalibrationReport& report, const Lines& lines,
-                const std::vector<FramePair>& pairs) {
-  std::vector<std::string> paths;
-  for (const FramePair& pair : pairs) paths.push_back(pair.name);
-  std::string error;
-  const std::vector<std::string> targets = Targets(paths, &error);
-  if (targets.empty()) {
-    std::cerr << error << "\n";
-    return false;
-  }
-  std::error_code code;
-  if (!FLAGS_in_place) std::filesystem::create_directories(FLAGS_output, code);
-  if (code) {
-    std::cerr << PrintablePath(FLAGS_output) << ": cannot be made: " << code.message() << "\n";
-    return false;
-  }
-  const std::map<std::string, std::string> marks = MarkLines(report, lines.normal, lines.axis);
-  if (FLAGS_in_place && AlreadyCalibrated(marks, pairs)) {
-    std::cerr << "nothing is written: all " << pairs.size() << " files are calibrated so already\n";
-    return true;
-  }
-  StagedFiles files;
-  for (size_t k = 0; k < pairs.size(); ++k) {
-    std::map<std::string, std::string> changed = marks;
-    if (report.plane) changed.merge(PlaneLines(*report.plane, lines.normal, lines.axis));
-    if (report.gravity) changed.merge(GravityLines(*report.gravity, pairs[k].prior));
-    std::string text;
-    if (!ReadWithHeaderLines(paths[k], changed, &text, &error) ||
-        !files.Add(targets[k], MatchFileBytes(targets[k], text), &error)) {
-      std::cerr << error << "; no file is written\n";
-      return false;
-    }
-  }
-  if (!files.Commit(&error)) {
-    std::cerr << error << "; " << files.committed() << " of " << pairs.size()
-              << " files are written\n";
-    return false;
-  }
-  std::cerr << "wrote " << pairs.size() << (pairs.size() == 1 ? " match file" : " match files")
-            << (FLAGS_in_place ? " in place" : " to " + PrintablePath(FLAGS_output)) << "\n";
-  return true;
-}
-
-int Run() {
-  ComparisonOptions options;
-  std::string error;
-  Lines lines;
-  if (!OptionsFromFlags(&options, &error)) return UsageError(error);
-  if (!ParseLines(FLAGS_lines, &lines)) {
-    return UsageError("--lines=" + FLAGS_lines + ": expected some of normal, axis, gravity");
-  }
-  EstimateOptions& estimate = options.estimate;
-  estimate.solver = FLAGS_solver;
-  if (!IsSolverName(FLAGS_solver)) {
-    return UsageError("--solver=" + FLAGS_solver + ": expected one of " + SolverNamesWithAuto());
-  }
-  if (!CanRefine(estimate, FLAGS_solver, &error)) return UsageError(error);
-  if (!estimate.refine_motion) {
-    return UsageError("--refine=none: a calibration is of refined motions");
-  }
-  if (lines.gravity && options.prior.source != PriorSource::kFile) {
-    return UsageError(
-        "--lines=gravity: the stated directions are those of the files: --prior=file");
-  }
-  if (FLAGS_in_place && !FLAGS_output.empty()) {
-    return UsageError("--in_place: --output names another place");
-  }
-  const std::vector<std::string> given = GivenFlags();
-  if (std::find(given.begin(), given.end(), "shard") != given.end()) {
-    return UsageError("--shard: a calibration is of all files");
-  }
-  const bool writes = FLAGS_in_place || !FLAGS_output.empty();
-  if (writes && ReadsStdin()) {
-    return UsageError(
-        "--matches: stdin has no file whose lines could be written; without --in_place and "
-        "--output it is read");
-  }
-
-  const InputFiles input = ListInput();
-  if (!OutputsDiffer({{"json", FLAGS_json}}, &error) ||
-      !OutputsAreNoInputs({{"json", FLAGS_json}}, input.all, &error)) {
-    return UsageError(error);
-  }
-  if (input.total == 0) return kExitFailed;
-  bool ok = input.all_there;
-  if (FLAGS_in_place) FinishInterruptedRun(input.paths);
-  // What would be refused at the end is refused before the work.
-  for (const std::string& line : Names(lines)) {
-    if (SameMarks(input.paths, line, &error)) continue;
-    std::cerr << error << "\n";
-    return kExitFailed;
-  }
-  if (writes) {
-    const std::vector<std::string> targets = Targets(input.paths, &error);
-    if (targets.empty()) {
-      std::cerr << error << "\n";
-      return kExitFailed;
-    }
-    for (const std::string& target : targets) {
-      if (!SameOutputFile(target, FLAGS_json)) continue;
-      return UsageError("--json=" + FLAGS_json + ": a match file goes to this file; name another");
-    }
-  }
-  struct Estimated {
-    CalibrationMotion motion;
-    Rig rig;
-    std::string failure;  // empty if there is a refined motion
-  };
-  const std::function<Estimated(const FramePair&)> work = [&](const FramePair& pair) {
-    const EstimateOptions pair_options =
-        options.use_stated_noise ? WithStatedNoise(estimate, pair) : estimate;
-    const MotionEstimate e = EstimateMotion(pair_options, pair);
-    const bool refined = e.status == EstimateStatus::kSuccess && e.refine.IsSolutionUsable();
-    // Any point of a body in planar motion will do. The rig's centre is the one that the matches
-    // say most of.
-    return Estimated{
-        {MotionOfPoint(e.pose, RigCentre(pair.rig)), refined && e.refine.rotation_observable,
-         refined && e.refine.rig_translation_observable, pair.prior},
-        pair.rig,
-        refined ? "" : FailureMessage(pair, FLAGS_solver, e.message)};
-  };
-  std::vector<BatchItem<Estimated>> items;
-  {
-    Progress progress("rigel_calibrate_prior", static_cast<int>(input.paths.size()));
-    items = RunBatch(options, input.paths, input.first, work, [&] { progress.Step(); });
-  }
-  std::vector<FramePair> pairs;
-  std::vector<CalibrationMotion> motions;
+CalibrationReport Calibrate(const Settings& settings, Clip* clip) {
   CalibrationReport report;
-  Rig rig;  // of the first pair
-  std::vector<std::string> errors, failures;
-  std::vector<AppliedAxes> axes;
-  for (BatchItem<Estimated>& item : items) {
-    if (!item.error.empty()) {
-      // Each that could not be read is told; of those that were many may lack the same.
-      if (item.pair.name.empty()) {
-        std::cerr << PrintablePath(item.error) << "\n";
-      } else {
-        errors.push_back(PrintablePath(item.error));
-      }
-      ok = false;
-      continue;
-    }
-    if (!item.result.failure.empty()) failures.push_back(item.result.failure);
-    if (pairs.empty()) rig = item.result.rig;
-    if (!SameCameras(rig, item.result.rig)) {
-      ReportGrouped(errors, input.paths);
-      std::cerr << "a calibration is of one vehicle: cameras differ between "
-                << PrintablePath(pairs.front().name) << " and " << PrintablePath(item.pair.name)
-                << "\n";
-      return kExitFailed;
-    }
-    pairs.push_back(std::move(item.pair));
-    axes.push_back(item.axes);
-    motions.push_back(item.result.motion);
-    report.estimated += item.result.motion.has_rotation ? 1 : 0;
+  report.pairs = static_cast<int>(clip->pairs.size());
+  for (const CalibrationMotion& motion : clip->motions) report.estimated += motion.has_rotation;
+  if (settings.lines.Plane()) {
+    report.start = Start(settings.options, clip->pairs, clip->rig, &clip->axes);
+    report.plane = CalibratePlane(clip->motions, report.start);
   }
-  ReportGrouped(errors, input.paths);
-  ReportGrouped(failures, input.paths);
-  if (pairs.empty()) return kExitFailed;
-  report.pairs = static_cast<int>(pairs.size());
-  if (lines.Plane()) report.start = Start(options, pairs, rig, &axes);
-  ReportSuggestedAxes(options, {FLAGS_solver}, axes);
-  if (failures.size() == pairs.size()) {
-    std::cerr << "no pair has a motion\n";
-    ok = false;
-  }
-  if (lines.Plane()) report.plane = CalibratePlane(motions, report.start);
-  if (lines.gravity) report.gravity = CalibrateGravity(motions);
+  if (settings.lines.gravity) report.gravity = CalibrateGravity(clip->motions);
   std::vector<std::string> output_flags = OutputFlags();
   output_flags.insert(output_flags.end(), {"output", "in_place"});
   report.options = FlagValues(output_flags);
+  return report;
+}
 
-  // stdout belongs to the machine if it asked for it.
-  if (!IsStdout(FLAGS_json)) {
-    std::cout << CalibrationText(report);
-    ok = FlushStdout() && ok;
-  }
-  if (!FLAGS_json.empty()) ok = WriteOutput(FLAGS_json, CalibrationJson(report)) && ok;
-  if (!writes) return ok ? kExitDone : kExitFailed;
-  if (FLAGS_in_place && (pairs.size() < items.size() || !input.all_there)) {
-    // The part that is calibrated would no longer be of one kind with the rest.
-    std::cerr << "nothing is written: --in_place needs all of the files, "
-              << items.size() - pairs.size() << " of " << items.size() << " cannot be used\n";
-    return kExitFailed;
+// Returns an exit code. The part that --in_place calibrated would not be of one kind with the rest.
+int WriteLines(const CalibrationReport& report, const CalibratedLines& lines,
+               const std::vector<FramePair>& pairs, const InputFiles& input) {
+  if (FLAGS_in_place && (pairs.size() < input.paths.size() || !input.all_there)) {
+    return Failure("nothing is written: --in_place needs all of the files, " +
+                   std::to_string(input.paths.size() - pairs.size()) + " of " +
+                   std::to_string(input.paths.size()) + " cannot be used");
   }
   const bool any = (report.plane && report.plane->level != CalibrationLevel::kNone) ||
                    (report.gravity && report.gravity->level != CalibrationLevel::kNone);
-  if (!any) {
-    std::cerr << "nothing is written: nothing that was asked for is determined\n";
-    return kExitFailed;
+  if (!any) return Failure("nothing is written: the motions determine none of --lines");
+  return ExitCode(WriteCalibratedFiles(report, lines, pairs, FLAGS_output));
+}
+
+int Run() {
+  Settings settings;
+  InputFiles input;
+  std::string error;
+  if (!SettingsFromFlags(&settings, &error)) return UsageError(error);
+  if (const int code = ListInput(Outputs(), &input); code != kExitDone) return code;
+  if (FLAGS_in_place) FinishInterruptedRun(input.paths);
+  if (const int code = CheckFiles(settings.lines, input.paths); code != kExitDone) return code;
+
+  Clip clip;
+  if (!Gather(EstimateFiles<Estimated>(settings.options, input, Keep), &clip, &error)) {
+    return Failure(error);
   }
-  return WriteFiles(report, lines, pairs) && ok ? kExitDone : kExitFailed;
+  ReportGrouped(clip.failures, input.paths);
+  if (clip.pairs.empty()) return kExitFailed;
+  const CalibrationReport report = Calibrate(settings, &clip);
+  ReportSuggestedAxes(settings.options, {FLAGS_solver}, clip.axes);
+  bool ok = input.all_there && clip.pairs.size() == input.paths.size();
+  if (clip.failures.size() == clip.pairs.size()) {
+    std::cerr << "no pair has a motion\n";
+    ok = false;
+  }
+
+  ok = PrintTable(CalibrationText(report), Outputs()) && ok;
+  if (!FLAGS_json.empty()) ok = WriteOutput(FLAGS_json, CalibrationJson(report)) && ok;
+  if (!WritesFiles()) return ExitCode(ok);
+  const int code = WriteLines(report, settings.lines, clip.pairs, input);
+  return code != kExitDone ? code : ExitCode(ok);
 }
 
 }  // namespace

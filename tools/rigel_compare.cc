@@ -13,62 +13,73 @@
 #include "rigel/problems/evaluation/report.h"
 #include "rigel/problems/evaluation/sequence_tables.h"
 #include "rigel/problems/evaluation/shard_report.h"
+#include "rigel/problems/io/input_file.h"
+#include "rigel/problems/io/json_text.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/refine/solver_choice.h"
 #include "rigel/tools/estimation_flags.h"
+#include "rigel/tools/estimation_messages.h"
+#include "rigel/tools/outputs.h"
+#include "rigel/tools/progress.h"
+#include "rigel/tools/solver_names.h"
 #include "rigel/tools/tool.h"
 
 DEFINE_string(
     solvers, "",
-    "names of solvers, comma separated, auto among them (see rigel_estimate); all that the "
-    "priors allow if empty");
+    "minimal solvers, comma separated; auto is allowed, as in rigel_estimate. If empty: all "
+    "whose prior every file has");
 DEFINE_string(
     by, "",
-    "sequence: the tables of the paper, too: time in RANSAC, median rotation and "
-    "translation direction error, one row a sequence, one column a solver; entries of each "
-    "sequence in --json");
-DEFINE_string(json, "", "write the report (format rigel-report 1) to this file; - is stdout");
-DEFINE_string(csv, "", "write one line a pair and solver to this file; - is stdout");
+    "sequence: also print tables per sequence, as in the paper: RANSAC time, median rotation "
+    "error and median direction error; one row per sequence, one column per solver. --json then "
+    "has entries per sequence");
+DEFINE_string(
+    json, "",
+    "write the report as JSON (format rigel-report 1, docs/formats.md) to this file; - is stdout");
+DEFINE_string(csv, "", "write one line per pair and solver to this file; - is stdout");
 DEFINE_bool(per_pair, false,
-            "write the results of each pair to --json, too; with --shard they always are");
-DEFINE_string(merge, "",
-              "reports that --shard and --json wrote, comma separated: write that of the whole "
-              "instead of reading match files");
+            "write the results of each pair to --json, too. Always on with --shard");
+DEFINE_string(
+    merge, "",
+    "reports of --shard runs, comma separated: combine them to one report instead of reading "
+    "match files");
 DEFINE_string(
     fail_above, "",
-    "bounds on statistics over all pairs, comma separated: STATISTIC:LIMIT for each solver or "
-    "SOLVER/STATISTIC:LIMIT, as refined.rotation_deg.median:0.03 with the names of the report "
-    "of --json; one that is above its bound or missing is told and the exit code is 3");
-DEFINE_int32(max_failures, -1, "the same for the number of pairs without a motion; -1: no bound");
+    "bounds, comma separated: STATISTIC:LIMIT for all solvers or SOLVER/STATISTIC:LIMIT for one, "
+    "for example refined.rotation_deg.median:0.03. Statistics have the names of --json and cover "
+    "all pairs. If one is above its limit or missing, the exit code is 3");
+DEFINE_int32(
+    max_failures, -1,
+    "bound on the number of pairs without a motion, per solver; above it the exit code is 3. -1: "
+    "no bound");
 DEFINE_string(
     baseline, "",
-    "an earlier report of --json: the same for each of its refined errors, its failures and its "
-    "pairs with a direction, solver by solver and sequence by sequence");
-DEFINE_double(tolerance, 0.05, "by what fraction those of --baseline may be exceeded");
+    "report of an earlier run (--json): the exit code is 3 if a refined error, the number of "
+    "failures or of pairs without a direction is worse than there, for any solver and sequence");
+DEFINE_double(tolerance, 0.05,
+              "fraction by which results may be worse than those of --baseline; 0.05 is 5 percent");
 
 namespace rigel {
 namespace {
 
 constexpr char kUsage[] =
-    "rigel_compare: how accurate the raw motion of RANSAC and the refined one are.\n"
+    "rigel_compare: measures the accuracy of solvers on match files with known motion.\n"
     "\n"
     "  rigel_compare --matches=DIR --solvers=4pt-axis,3pt --prior=body\n"
     "\n"
-    "Reads match files with a truth line, estimates each pair with each solver and prints the "
-    "median\n"
-    "errors: rotation, direction of translation and scale, where these are observable; beside "
-    "them,\n"
-    "where the files state the image noise, the Cramer-Rao bound that no estimate can beat. With\n"
-    "--refine=none nothing says what is observable: the direction is shown of every pair, the "
-    "scale\n"
-    "of pairs with matches between cameras.\n"
+    "Estimates each pair with each solver and prints the median errors of the motions, from\n"
+    "RANSAC (raw) and refined: rotation, direction of translation and scale, where these are\n"
+    "observable. Files need a truth line. If they state the image noise, the table also shows\n"
+    "the Cramer-Rao bound, which no unbiased estimate can beat. With --refine=none it is not\n"
+    "known what is observable: errors of direction are then of all pairs, errors of scale of the\n"
+    "pairs with matches between different cameras.\n"
     "\n"
-    "Many files, on several machines and put together again (docs/batch.md):\n"
+    "Parallel runs over many files (docs/batch.md):\n"
     "\n"
     "  rigel_compare --matches=DIR --shard=0/2 --json=0.json      (and 1/2 to 1.json)\n"
     "  rigel_compare --merge=0.json,1.json --json=whole.json\n"
     "\n"
-    "As a test, which fails with exit code 3 (docs/regression.md):\n"
+    "Regression test, exit code 3 if results are worse than before (docs/regression.md):\n"
     "\n"
     "  rigel_compare --matches=DIR --baseline=report.json --max_failures=0\n";
 
@@ -82,29 +93,41 @@ bool BoundsFromFlags(ReportBounds* bounds, std::string* error) {
     return false;
   }
   if (FLAGS_max_failures < -1) {
-    *error = "--max_failures=" + std::to_string(FLAGS_max_failures) +
-             ": expected 0 or more, or -1 for no bound";
-    return false;
+    return Refuse("--max_failures=" + std::to_string(FLAGS_max_failures) +
+                      ": expected 0 or more, or -1 for no bound",
+                  error);
   }
   if (FLAGS_max_failures >= 0) bounds->max_failures = FLAGS_max_failures;
-  const std::vector<std::string> given = GivenFlags();
-  const auto is_given = [&](const std::string& name) {
-    return std::find(given.begin(), given.end(), name) != given.end();
-  };
-  if (is_given("tolerance") && FLAGS_baseline.empty()) {
-    *error = "--tolerance: has no effect without --baseline";
-    return false;
+  if (IsGiven("tolerance") && FLAGS_baseline.empty()) {
+    return Refuse("--tolerance: has no effect without --baseline", error);
   }
   if (!(FLAGS_tolerance >= 0) || !std::isfinite(FLAGS_tolerance)) {
-    *error = "--tolerance: expected a number from 0, as 0.05 for 5 percent";
-    return false;
+    return Refuse("--tolerance: expected a number from 0, as 0.05 for 5 percent", error);
   }
   bounds->tolerance = FLAGS_tolerance;
-  const bool any = std::any_of(kBoundFlags.begin(), kBoundFlags.end(), is_given);
-  if (any && is_given("shard")) {
-    *error = "--shard: bounds are of the whole; state them where the shards are merged";
+  if (!FirstGiven(kBoundFlags).empty() && IsGiven("shard")) {
+    return Refuse("--shard: bounds are of the whole; state them where the shards are merged",
+                  error);
+  }
+  return true;
+}
+
+// A report of --json as text. False with a message on stderr if it cannot be read.
+bool ReadReport(const std::string& path, std::string* text) {
+  InputBytes bytes;
+  std::string error;
+  if (!ReadInputFile(path, &bytes, &error, kMaxJsonBytes)) {
+    std::cerr << error << "\n";
     return false;
   }
+  std::string_view input = bytes.text();
+  int64_t line;
+  if (!CheckText(&input, &line, &error)) {
+    std::cerr << PrintablePath(InputName(path)) << (line > 0 ? ":" + std::to_string(line) : "")
+              << ": " << error << ", expected UTF-8 text\n";
+    return false;
+  }
+  *text = std::string(input);
   return true;
 }
 
@@ -112,7 +135,7 @@ bool BoundsFromFlags(ReportBounds* bounds, std::string* error) {
 bool ReadBaseline(ReportBounds* bounds) {
   if (FLAGS_baseline.empty()) return true;
   std::string text, error;
-  if (!ReadInput(FLAGS_baseline, &text)) return false;
+  if (!ReadReport(FLAGS_baseline, &text)) return false;
   if (ParseBaseline(text, FLAGS_baseline, &bounds->baseline, &error)) return true;
   std::cerr << error << "\n";
   return false;
@@ -120,7 +143,8 @@ bool ReadBaseline(ReportBounds* bounds) {
 
 // One line on stderr each bound missed. Who could not do all there was to do has failed, whatever
 // the bounds say of the rest.
-int ExitCode(bool ok, const ReportBounds& bounds, const std::vector<SolverResults>& solvers) {
+int ExitCodeOfBounds(bool ok, const ReportBounds& bounds,
+                     const std::vector<SolverResults>& solvers) {
   const std::vector<std::string> missed = MissedBounds(bounds, SummarizeAll(solvers, true));
   for (const std::string& line : missed) std::cerr << line << "\n";
   if (!ok) return kExitFailed;
@@ -129,29 +153,26 @@ int ExitCode(bool ok, const ReportBounds& bounds, const std::vector<SolverResult
 
 std::vector<OutputFlag> Outputs() { return {{"json", FLAGS_json}, {"csv", FLAGS_csv}}; }
 
-// Table, JSON and CSV.
-bool Write(ComparisonReport* report, bool by_sequence) {
-  if (!TimesAreGiven()) {
-    for (SolverResults& solver : report->solvers) {
-      for (PairResult& r : solver.pairs) {
-        r.ransac_ms.reset();
-        r.refine_ms.reset();
-      }
+void DropTimes(ComparisonReport* report) {
+  for (SolverResults& solver : report->solvers) {
+    for (PairResult& r : solver.pairs) {
+      r.ransac_ms.reset();
+      r.refine_ms.reset();
     }
   }
+}
+
+// Table, JSON and CSV. False with a message on stderr if one cannot be written.
+bool Write(ComparisonReport* report, bool by_sequence) {
+  if (!TimesAreGiven()) DropTimes(report);
   const std::vector<SolverSummary> summaries = SummarizeAll(report->solvers, by_sequence);
   const bool has_pairs = !report->solvers.front().pairs.empty();
   if (by_sequence && has_pairs && summaries.size() == report->solvers.size()) {
     std::cerr << "--by=sequence: no file names a sequence\n";
   }
-  bool ok = true;
-  // stdout belongs to the machine if it asked for it.
-  if (!IsStdout(FLAGS_json) && !IsStdout(FLAGS_csv)) {
-    const std::string table = ComparisonTable(summaries);
-    const bool bold = by_sequence && isatty(STDOUT_FILENO) != 0;
-    std::cout << (bold ? BestInBold(table) : table);
-    ok = FlushStdout();
-  }
+  const std::string table = ComparisonTable(summaries);
+  const bool bold = by_sequence && isatty(STDOUT_FILENO) != 0;
+  bool ok = PrintTable(bold ? BestInBold(table) : table, Outputs());
   const bool per_pair = FLAGS_per_pair || report->shard.has_value();
   if (!FLAGS_json.empty()) {
     ok = WriteOutput(FLAGS_json, ComparisonJson(*report, summaries, per_pair)) && ok;
@@ -171,6 +192,23 @@ bool AnyMotion(const ComparisonReport& report) {
   return false;
 }
 
+// The whole of the shards' reports. False with a message on stderr if they are not one.
+bool ReadShards(const std::vector<std::string>& names, ComparisonReport* whole) {
+  std::vector<ComparisonReport> shards(names.size());
+  std::string error;
+  for (size_t k = 0; k < names.size(); ++k) {
+    std::string text;
+    if (!ReadReport(names[k], &text)) return false;
+    if (!ParseShardReport(text, names[k], &shards[k], &error)) {
+      std::cerr << error << "\n";
+      return false;
+    }
+  }
+  if (MergeShards(names, &shards, whole, &error)) return true;
+  std::cerr << error << "\n";
+  return false;
+}
+
 int Merge(ReportBounds* bounds) {
   std::vector<std::string> allowed = {"csv", "json", "merge", "no_times", "per_pair"};
   allowed.insert(allowed.end(), kBoundFlags.begin(), kBoundFlags.end());
@@ -184,66 +222,39 @@ int Merge(ReportBounds* bounds) {
   std::string error;
   if (!OutputsAreNoInputs(Outputs(), names, &error)) return UsageError(error);
   if (!ReadBaseline(bounds)) return kExitFailed;
-  std::vector<ComparisonReport> shards(names.size());
-  for (size_t k = 0; k < names.size(); ++k) {
-    std::string text;
-    if (!ReadInput(names[k], &text)) return kExitFailed;
-    if (!ParseShardReport(text, names[k], &shards[k], &error)) {
-      std::cerr << error << "\n";
-      return kExitFailed;
-    }
-  }
   ComparisonReport whole;
-  if (!MergeShards(names, &shards, &whole, &error)) {
-    std::cerr << error << "\n";
-    return kExitFailed;
-  }
+  if (!ReadShards(names, &whole)) return kExitFailed;
   const std::pair<std::string, std::string> by_sequence("by", "sequence");
   const bool by =
       std::find(whole.options.begin(), whole.options.end(), by_sequence) != whole.options.end();
   const bool ok = Write(&whole, by) && AnyMotion(whole);
-  return ExitCode(ok, *bounds, whole.solvers);
+  return ExitCodeOfBounds(ok, *bounds, whole.solvers);
 }
 
-int Run() {
-  std::string error;
-  if (!OutputsDiffer(Outputs(), &error)) return UsageError(error);
-  ReportBounds bounds;
-  if (!BoundsFromFlags(&bounds, &error)) return UsageError(error);
-  if (!FLAGS_baseline.empty() && !OutputsAreNoInputs(Outputs(), {FLAGS_baseline}, &error)) {
-    return UsageError(error);
+bool SettingsFromFlags(ComparisonOptions* options, std::string* error) {
+  if (!OptionsFromFlags(options, error) ||
+      !ParseSolvers(FLAGS_solvers, IsSolverName, SolverNamesWithAuto(), &options->solvers, error)) {
+    return false;
   }
-  if (!FLAGS_merge.empty()) return Merge(&bounds);
-  ComparisonOptions options;
-  if (!OptionsFromFlags(&options, &error)) return UsageError(error);
-  options.solvers = SplitCommas(FLAGS_solvers);
-  if (!FLAGS_solvers.empty() && options.solvers.empty()) {
-    return UsageError("--solvers=" + FLAGS_solvers + ": names no solver");
-  }
-  for (const std::string& name : options.solvers) {
-    if (!IsSolverName(name)) {
-      return UsageError("--solvers: there is no solver '" + name + "'; expected some of " +
-                        SolverNamesWithAuto());
-    }
-    if (!CanRefine(options.estimate, name, &error)) return UsageError(error);
-    if (std::count(options.solvers.begin(), options.solvers.end(), name) > 1) {
-      return UsageError("--solvers: '" + name + "' is named twice");
+  for (const std::string& name : options->solvers) {
+    if (!CanRefine(options->estimate, name, error)) return false;
+    if (std::count(options->solvers.begin(), options->solvers.end(), name) > 1) {
+      return Refuse("--solvers: '" + name + "' is named twice", error);
     }
   }
   if (!FLAGS_by.empty() && FLAGS_by != "sequence") {
-    return UsageError("--by=" + FLAGS_by + ": expected sequence");
+    return WrongValue("by", FLAGS_by, "sequence", error);
   }
+  return true;
+}
 
-  if (!ReadBaseline(&bounds)) return kExitFailed;
-  const InputFiles input = ListInput();
-  if (!OutputsAreNoInputs(Outputs(), input.all, &error)) return UsageError(error);
-  if (input.total == 0) return kExitFailed;
+// Files that cannot be compared are told on stderr.
+FileComparison Compare(ComparisonOptions options, const InputFiles& input) {
   FileComparison comparison;
   {
-    Progress progress("rigel_compare", static_cast<int>(input.paths.size()));
+    Progress progress(ProgramName(), static_cast<int>(input.paths.size()));
     options.estimate.refine.progress = ShowRefinement(&progress);
     comparison = CompareFiles(options, input.paths, input.first, [&] { progress.Step(); });
-    options.estimate.refine.progress = nullptr;
   }
   for (const std::string& message : comparison.errors) std::cerr << PrintablePath(message) << "\n";
   std::vector<std::string> without_truth;
@@ -251,13 +262,12 @@ int Run() {
     without_truth.push_back(PrintablePath(message));
   }
   ReportGrouped(without_truth, input.paths);
-  bool ok = input.all_there && comparison.errors.empty() && without_truth.empty();
-  // A shard may have nothing to report, the whole may not.
-  if (comparison.pairs.empty() && !input.shard) return kExitFailed;
-  if (comparison.solvers.empty()) {
-    std::cerr << "no solver's prior is in every file; try --prior=body\n";
-    return kExitFailed;
-  }
+  return comparison;
+}
+
+// The axes and priors that were taken, failures and doubtful motions, on stderr.
+void ReportMotions(const ComparisonOptions& options, const FileComparison& comparison,
+                   const InputFiles& input) {
   std::vector<std::string> solvers;
   for (const SolverResults& results : comparison.solvers) solvers.push_back(results.solver);
   ReportSuggestedAxes(options, solvers, comparison.axes);
@@ -267,16 +277,19 @@ int Run() {
     std::vector<DoubtedMotion> motions;
     for (size_t k = 0; k < results.pairs.size(); ++k) {
       const PairResult& result = results.pairs[k];
+      const FramePair& pair = comparison.pairs[k];
       if (result.failed) {
-        failures.push_back(FailureMessage(comparison.pairs[k], results.solver, result.message));
+        failures.push_back(FailureMessage(pair, results.solver, result.message));
       } else {
-        motions.push_back({comparison.pairs[k].name, result.doubt});
+        motions.push_back({pair.name, result.doubt});
       }
     }
     ReportGrouped(failures, input.paths);
     ReportDoubts(results.solver, motions);
   }
+}
 
+ComparisonReport MakeReport(FileComparison comparison, const InputFiles& input) {
   ComparisonReport report;
   std::vector<std::string> output_flags = OutputFlags();
   output_flags.insert(output_flags.end(), {"merge", "per_pair"});
@@ -284,11 +297,39 @@ int Run() {
   report.options = FlagValues(output_flags);
   report.solvers = std::move(comparison.solvers);
   report.shard = input.shard;
-  report.num_files = input.total;
+  report.num_files = static_cast<int>(input.all.size());
+  return report;
+}
+
+int Run() {
+  ComparisonOptions options;
+  ReportBounds bounds;
+  InputFiles input;
+  std::string error;
+  if (!OutputsDiffer(Outputs(), &error) || !BoundsFromFlags(&bounds, &error)) {
+    return UsageError(error);
+  }
+  if (!FLAGS_baseline.empty() && !OutputsAreNoInputs(Outputs(), {FLAGS_baseline}, &error)) {
+    return UsageError(error);
+  }
+  if (!FLAGS_merge.empty()) return Merge(&bounds);
+  if (!SettingsFromFlags(&options, &error)) return UsageError(error);
+  if (!ReadBaseline(&bounds)) return kExitFailed;
+  if (const int code = ListInput(Outputs(), &input); code != kExitDone) return code;
+
+  FileComparison comparison = Compare(options, input);
+  // A shard may have nothing to report, the whole may not.
+  if (comparison.pairs.empty() && !input.shard) return kExitFailed;
+  if (comparison.solvers.empty()) {
+    return Failure("no solver's prior is in every file; try --prior=body");
+  }
+  ReportMotions(options, comparison, input);
+  bool ok = input.all_there && comparison.errors.empty() && comparison.without_truth.empty();
+  ComparisonReport report = MakeReport(std::move(comparison), input);
   ok = Write(&report, FLAGS_by == "sequence") && ok;
   // Of the whole, not of a part.
   ok = (input.shard || AnyMotion(report)) && ok;
-  return ExitCode(ok, bounds, report.solvers);
+  return ExitCodeOfBounds(ok, bounds, report.solvers);
 }
 
 }  // namespace

@@ -6,57 +6,61 @@
 
 #include <gflags/gflags.h>
 
-#include "rigel/problems/evaluation/batch.h"
 #include "rigel/problems/evaluation/report.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/message_groups.h"
 #include "rigel/problems/io/trajectory_file.h"
 #include "rigel/problems/io/whole_file.h"
 #include "rigel/problems/trajectories/g2o_file.h"
-#include "rigel/refine/solver_choice.h"
+#include "rigel/tools/estimate_files.h"
 #include "rigel/tools/estimation_flags.h"
+#include "rigel/tools/estimation_messages.h"
+#include "rigel/tools/outputs.h"
 #include "rigel/tools/tool.h"
 
 DEFINE_string(
     solver, "auto",
-    "name of the minimal solver of RANSAC, or auto: the most constrained one that the priors "
-    "allow, others after it while the result is doubtful");
-DEFINE_string(json, "", "write the motions (format rigel-estimate 1) to this file; - is stdout");
-DEFINE_string(csv, "", "write one line a pair to this file; - is stdout");
+    "minimal solver of RANSAC (docs/solvers.md), or auto: tries the solvers that the prior "
+    "allows, the most constrained one first, until the motion is not doubtful");
+DEFINE_string(
+    json, "",
+    "write the motions as JSON (format rigel-estimate 1, docs/formats.md) to this file; - is "
+    "stdout");
+DEFINE_string(csv, "", "write the motions as CSV, one line per pair, to this file; - is stdout");
 DEFINE_string(
     g2o, "",
-    "write a pose graph of g2o, files in order one after the other along a drive, to this "
-    "file; - is stdout");
+    "write a g2o pose graph to this file; - is stdout. The files, in order, are consecutive "
+    "pairs of one drive. Needs a refinement");
 DEFINE_string(
     kitti_trajectory, "",
-    "chain the motions, files in order along a drive, and write the poses as KITTI does (12 "
-    "numbers a line, body frame) to this file; several trajectories to FILE_0.EXT, FILE_1.EXT, "
-    "...; - is stdout");
-DEFINE_string(tum_trajectory, "", "the same as TUM's tools have it: TIME X Y Z QX QY QZ QW a line");
-DEFINE_bool(truth_trajectory, false,
-            "write the truth's trajectory as well, beside each: FILE_truth.EXT");
+    "chain the motions of consecutive pairs and write the poses of the body in KITTI format (12 "
+    "numbers per line, metres) to this file; - is stdout. Several trajectories go to FILE_0.EXT, "
+    "FILE_1.EXT, ...");
+DEFINE_string(
+    tum_trajectory, "",
+    "the same in TUM format, as evo reads it: TIME X Y Z QX QY QZ QW per line; seconds and "
+    "metres");
+DEFINE_bool(truth_trajectory, false, "also write the true trajectory, to FILE_truth.EXT");
 DEFINE_bool(drift, false,
-            "chain the motions and print how far they drift from the truth: KITTI's metric, "
-            "errors of single steps and of the end; as of the trajectory flags where there is a "
-            "truth");
+            "chain the motions and print the drift: the errors of the KITTI odometry benchmark, of "
+            "single steps and of the final pose. Needs truth lines");
 
 namespace rigel {
 namespace {
 
 constexpr char kUsage[] =
-    "rigel_estimate: the motion (R, t), X_2 = R X_1 + t, of each match file.\n"
+    "rigel_estimate: estimates the relative pose (R, t), X_2 = R X_1 + t, of each match file.\n"
     "\n"
     "  rigel_estimate --matches=DIR --prior=body --json=motions.json\n"
     "\n"
-    "RANSAC with a minimal solver makes hypotheses, a refinement makes them accurate. The table\n"
-    "gives the rotation angle, the direction of translation and |t| with their standard "
-    "deviations,\n"
-    "and \"-\" for what the matches do not determine. With --refine=none nothing says what they\n"
-    "determine: the direction is shown as it is, |t| only where there are matches between "
-    "cameras.\n"
-    "The JSON and CSV give the motions in full, raw and refined; --g2o chains the refined ones,\n"
-    "with their information, to a pose graph, --kitti_trajectory and --tum_trajectory to "
-    "trajectories.\n";
+    "RANSAC with a minimal solver finds a motion and its inliers; a nonlinear refinement then\n"
+    "minimizes their error. The table shows the rotation angle, the direction of translation and\n"
+    "|t|, each with its standard deviation, and \"-\" for what the matches do not determine. With\n"
+    "--refine=none this is not known: the table then shows every direction, and |t| only if\n"
+    "there are matches between different cameras.\n"
+    "\n"
+    "The JSON and CSV files hold the complete motions, from RANSAC (raw) and refined. The other\n"
+    "outputs chain the refined motions of a drive to a pose graph or a trajectory.\n";
 
 // Flags of outputs, with their files.
 std::vector<OutputFlag> Outputs() {
@@ -67,10 +71,8 @@ std::vector<OutputFlag> Outputs() {
           {"tum_trajectory", FLAGS_tum_trajectory}};
 }
 
-bool StdoutIsAskedFor() {
-  const auto outputs = Outputs();
-  return std::any_of(outputs.begin(), outputs.end(),
-                     [](const auto& output) { return IsStdout(output.second); });
+bool IsTrajectory(const std::string& flag) {
+  return flag == "kitti_trajectory" || flag == "tum_trajectory";
 }
 
 bool Chained() {
@@ -83,6 +85,77 @@ void ReportNotes(const std::string& before, const std::vector<std::string>& note
   std::vector<std::string> files;
   for (const FramePair& pair : pairs) files.push_back(pair.name);
   for (const std::string& note : GroupMessages(notes, files)) std::cerr << before << note << "\n";
+}
+
+bool SettingsFromFlags(ComparisonOptions* options, std::string* error) {
+  if (!OptionsFromFlags(options, error) ||
+      !SolverFromFlag(FLAGS_solver, &options->estimate, error) ||
+      !OutputsDiffer(Outputs(), error)) {
+    return false;
+  }
+  if (!FLAGS_g2o.empty() && !options->estimate.refine_motion) {
+    return Refuse("--g2o: without a refinement (--refine=none) a motion has no information", error);
+  }
+  if (FLAGS_truth_trajectory && FLAGS_kitti_trajectory.empty() && FLAGS_tum_trajectory.empty()) {
+    return Refuse("--truth_trajectory: needs --kitti_trajectory or --tum_trajectory", error);
+  }
+  if (FLAGS_truth_trajectory &&
+      (IsStdout(FLAGS_kitti_trajectory) || IsStdout(FLAGS_tum_trajectory))) {
+    return Refuse("--truth_trajectory: stdout takes one trajectory; name a file", error);
+  }
+  return true;
+}
+
+// The motions of the run and, for each pair, its place among all files and the axes of its body.
+struct Motions {
+  EstimateReport report;
+  std::vector<int> positions;
+  std::vector<AppliedAxes> axes;
+};
+
+Motions Estimate(const ComparisonOptions& options, const InputFiles& input) {
+  struct Estimated {
+    MotionEstimate estimate;
+    MatchCount matches;
+  };
+  const auto keep = [](const FramePair& pair, MotionEstimate estimate) {
+    estimate.refine.inliers = std::vector<char>();
+    return Estimated{std::move(estimate),
+                     {static_cast<int>(pair.matches.size()), HasInterCameraMatches(pair)}};
+  };
+  Motions motions;
+  for (BatchItem<Estimated>& item : EstimateFiles<Estimated>(options, input, keep)) {
+    motions.axes.push_back(item.axes);
+    motions.positions.push_back(item.position);
+    motions.report.pairs.push_back(std::move(item.pair));
+    motions.report.matches.push_back(item.result.matches);
+    motions.report.estimates.push_back(std::move(item.result.estimate));
+  }
+  motions.report.refined = options.estimate.refine_motion;
+  std::vector<std::string> output_flags = OutputFlags();
+  output_flags.insert(output_flags.end(),
+                      {"g2o", "kitti_trajectory", "tum_trajectory", "truth_trajectory", "drift"});
+  motions.report.options = FlagValues(output_flags);
+  return motions;
+}
+
+// Failed and doubtful motions, on stderr. False if no pair has a motion.
+bool ReportMotions(const EstimateReport& report, const InputFiles& input) {
+  std::vector<std::string> failures;
+  std::vector<DoubtedMotion> motions;
+  for (size_t k = 0; k < report.pairs.size(); ++k) {
+    const MotionEstimate& e = report.estimates[k];
+    if (e.HasMotion()) motions.push_back({report.pairs[k].name, e.doubt});
+    if (e.status == EstimateStatus::kSuccess) continue;
+    failures.push_back(FailureMessage(report.pairs[k], FLAGS_solver, e.message));
+  }
+  ReportGrouped(failures, input.paths);
+  // That is to be told of the whole, not of a part.
+  const bool none = motions.empty() && !input.shard;
+  if (none) std::cerr << "no pair has a motion\n";
+  ReportDoubts(FLAGS_solver, motions);
+  for (const std::string& line : RigDoubtLines(report)) std::cerr << line << "\n";
+  return !none;
 }
 
 // Chains the motions of the report. `positions` as in ChainMotions(). False if
@@ -121,8 +194,7 @@ std::vector<OutputFlag> AllOutputs(const std::vector<Trajectory>& trajectories) 
   std::vector<OutputFlag> all;
   for (const OutputFlag& output : Outputs()) {
     const auto& [flag, path] = output;
-    const bool trajectory = flag == "kitti_trajectory" || flag == "tum_trajectory";
-    if (!trajectory || path.empty() || IsStdout(path)) {
+    if (!IsTrajectory(flag) || path.empty() || IsStdout(path)) {
       all.push_back(output);
       continue;
     }
@@ -174,137 +246,54 @@ bool WriteTrajectories(const std::vector<Trajectory>& trajectories,
   return true;
 }
 
-// Of a solver that was named; the table says it of auto's.
-void ReportDoubts(const EstimateReport& report) {
-  std::vector<DoubtedMotion> motions;
-  for (size_t k = 0; k < report.estimates.size(); ++k) {
-    const MotionEstimate& e = report.estimates[k];
-    if (e.HasMotion()) motions.push_back({report.pairs[k].name, e.doubt});
-  }
-  ReportDoubts(FLAGS_solver, motions);
-}
-
-int Run() {
-  ComparisonOptions options;
-  std::string error;
-  if (!OptionsFromFlags(&options, &error)) return UsageError(error);
-  EstimateOptions& estimate = options.estimate;
-  estimate.solver = FLAGS_solver;
-  if (!IsSolverName(FLAGS_solver)) {
-    return UsageError("--solver=" + FLAGS_solver + ": expected one of " + SolverNamesWithAuto());
-  }
-  if (!CanRefine(estimate, FLAGS_solver, &error)) return UsageError(error);
-  if (!OutputsDiffer(Outputs(), &error)) return UsageError(error);
-  if (!FLAGS_g2o.empty() && !estimate.refine_motion) {
-    return UsageError("--g2o: without a refinement (--refine=none) a motion has no information");
-  }
-  if (FLAGS_truth_trajectory && FLAGS_kitti_trajectory.empty() && FLAGS_tum_trajectory.empty()) {
-    return UsageError("--truth_trajectory: needs --kitti_trajectory or --tum_trajectory");
-  }
-  if (FLAGS_truth_trajectory &&
-      (IsStdout(FLAGS_kitti_trajectory) || IsStdout(FLAGS_tum_trajectory))) {
-    return UsageError("--truth_trajectory: stdout takes one trajectory; name a file");
-  }
-
-  const InputFiles input = ListInput();
-  if (!OutputsAreNoInputs(Outputs(), input.all, &error)) return UsageError(error);
-  if (input.total == 0) return kExitFailed;
-  bool ok = input.all_there;
-  struct Estimated {
-    MotionEstimate estimate;
-    MatchCount matches;
-  };
-  const std::function<Estimated(const FramePair&)> work = [&](const FramePair& pair) {
-    const EstimateOptions pair_options =
-        options.use_stated_noise ? WithStatedNoise(estimate, pair) : estimate;
-    Estimated result{EstimateMotion(pair_options, pair),
-                     {static_cast<int>(pair.matches.size()), HasInterCameraMatches(pair)}};
-    result.estimate.refine.inliers = std::vector<char>();
-    return result;
-  };
-  std::vector<BatchItem<Estimated>> items;
-  {
-    Progress progress(FLAGS_solver, static_cast<int>(input.paths.size()));
-    estimate.refine.progress = ShowRefinement(&progress);
-    items = RunBatch(options, input.paths, input.first, work, [&] { progress.Step(); });
-    estimate.refine.progress = nullptr;
-  }
-  EstimateReport report;
-  std::vector<int> positions;
-  std::vector<std::string> errors, failures;
-  std::vector<AppliedAxes> axes;
-  for (BatchItem<Estimated>& item : items) {
-    if (!item.error.empty()) {
-      // Each that could not be read is told; of those that were many may lack the same.
-      if (item.pair.name.empty()) {
-        std::cerr << PrintablePath(item.error) << "\n";
-      } else {
-        errors.push_back(PrintablePath(item.error));
-      }
-      ok = false;
-      continue;
-    }
-    axes.push_back(item.axes);
-    positions.push_back(item.position);
-    report.pairs.push_back(std::move(item.pair));
-    report.matches.push_back(item.result.matches);
-    report.estimates.push_back(std::move(item.result.estimate));
-  }
-  ReportGrouped(errors, input.paths);
-  // A shard may have nothing to report, the whole may not.
-  if (report.pairs.empty() && !input.shard) return kExitFailed;
-  ReportSuggestedAxes(options, {FLAGS_solver}, axes);
-  ReportUnweighedPriors(options, {FLAGS_solver}, report.pairs);
-  bool any_motion = false;
-  for (size_t k = 0; k < report.pairs.size(); ++k) {
-    const MotionEstimate& e = report.estimates[k];
-    any_motion = any_motion || e.HasMotion();
-    if (e.status == EstimateStatus::kSuccess) continue;
-    failures.push_back(FailureMessage(report.pairs[k], FLAGS_solver, e.message));
-  }
-  ReportGrouped(failures, input.paths);
-  // That is to be told of the whole, not of a part.
-  if (!any_motion && !input.shard) {
-    std::cerr << "no pair has a motion\n";
-    ok = false;
-  }
-
-  ReportDoubts(report);
-  for (const std::string& line : RigDoubtLines(report)) std::cerr << line << "\n";
-  report.refined = estimate.refine_motion;
-  // An empty shard has nothing to chain, and nothing is wrong with it.
-  if (Chained() && !report.pairs.empty()) ok = Chain(positions, &report) && ok;
-  if (report.trajectories &&
-      (!OutputsDiffer(AllOutputs(*report.trajectories), &error) ||
-       !OutputsAreNoInputs(AllOutputs(*report.trajectories), input.all, &error))) {
-    return UsageError(error);
-  }
-  // stdout belongs to the machine if it asked for it.
-  if (!StdoutIsAskedFor()) {
-    std::cout << EstimateTable(report);
-    const std::string drift = DriftTable(report);
-    if (!drift.empty()) std::cout << "\n" << drift;
-    ok = FlushStdout() && ok;
-  }
-  std::vector<std::string> output_flags = OutputFlags();
-  output_flags.insert(output_flags.end(),
-                      {"g2o", "kitti_trajectory", "tum_trajectory", "truth_trajectory", "drift"});
-  report.options = FlagValues(output_flags);
+// The table and the files that the flags name. False with a message on stderr if one cannot be
+// written.
+bool Write(const Motions& motions) {
+  const EstimateReport& report = motions.report;
+  const std::string drift = DriftTable(report);
+  bool ok = PrintTable(EstimateTable(report) + (drift.empty() ? "" : "\n" + drift), Outputs());
   const bool times = TimesAreGiven();
   if (!FLAGS_json.empty()) ok = WriteOutput(FLAGS_json, EstimateJson(report, times)) && ok;
   if (!FLAGS_csv.empty()) ok = WriteOutput(FLAGS_csv, EstimateCsv(report, times)) && ok;
   if (!FLAGS_g2o.empty()) {
     std::vector<std::string> notes;
-    const std::string graph = FormatG2o(report.pairs, report.estimates, positions, &notes);
+    const std::string graph = FormatG2o(report.pairs, report.estimates, motions.positions, &notes);
     ReportNotes("--g2o: ", notes, report.pairs);
     ok = WriteOutput(FLAGS_g2o, graph) && ok;
   }
-  if (report.trajectories) {
-    const std::vector<Trajectory>& trajectories = *report.trajectories;
-    ok = WriteTrajectories(trajectories, axes, "kitti_trajectory", FLAGS_kitti_trajectory) && ok;
-    ok = WriteTrajectories(trajectories, axes, "tum_trajectory", FLAGS_tum_trajectory) && ok;
+  if (!report.trajectories) return ok;
+  for (const auto& [flag, path] : Outputs()) {
+    if (!IsTrajectory(flag)) continue;
+    ok = WriteTrajectories(*report.trajectories, motions.axes, flag, path) && ok;
   }
-  return ok ? kExitDone : kExitFailed;
+  return ok;
+}
+
+int Run() {
+  ComparisonOptions options;
+  InputFiles input;
+  std::string error;
+  if (!SettingsFromFlags(&options, &error)) return UsageError(error);
+  if (const int code = ListInput(Outputs(), &input); code != kExitDone) return code;
+
+  Motions motions = Estimate(options, input);
+  EstimateReport& report = motions.report;
+  // A shard may have nothing to report, the whole may not.
+  if (report.pairs.empty() && !input.shard) return kExitFailed;
+  ReportSuggestedAxes(options, {FLAGS_solver}, motions.axes);
+  ReportUnweighedPriors(options, {FLAGS_solver}, report.pairs);
+  bool ok = input.all_there && report.pairs.size() == input.paths.size();
+  ok = ReportMotions(report, input) && ok;
+  // An empty shard has nothing to chain, and nothing is wrong with it.
+  if (Chained() && !report.pairs.empty()) ok = Chain(motions.positions, &report) && ok;
+  if (report.trajectories) {
+    const std::vector<OutputFlag> outputs = AllOutputs(*report.trajectories);
+    if (!OutputsDiffer(outputs, &error) || !OutputsAreNoInputs(outputs, input.all, &error)) {
+      return UsageError(error);
+    }
+  }
+  ok = Write(motions) && ok;
+  return ExitCode(ok);
 }
 
 }  // namespace

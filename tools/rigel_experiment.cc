@@ -16,26 +16,32 @@
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/run_lock.h"
 #include "rigel/problems/io/whole_file.h"
+#include "rigel/tools/output_directory.h"
+#include "rigel/tools/outputs.h"
+#include "rigel/tools/progress.h"
 #include "rigel/tools/python_script.h"
 #include "rigel/tools/tool.h"
 
-DEFINE_string(name, "", "names of experiments, comma separated, or all; --list shows them");
-DEFINE_bool(list, false, "print the experiments, one a line, and end");
-DEFINE_string(output, "", "directory that gets the results; made if missing");
-DEFINE_bool(quick, false, "few pairs and a coarse grid: minutes instead of hours");
-DEFINE_int32(pairs, 0, "frame pairs of each point; 0: 500, with --quick 30");
+DEFINE_string(name, "", "names of experiments, comma separated, or all; see --list");
+DEFINE_bool(list, false, "print the names of the experiments and exit");
+DEFINE_string(output, "", "directory for the results; created if missing");
+DEFINE_bool(quick, false, "fewer pairs and a coarser grid: minutes instead of hours");
+DEFINE_int32(pairs, 0, "number of frame pairs per point. 0: 500, with --quick 30");
 DEFINE_string(poses, "",
-              "directory of KITTI odometry poses (00.txt, ...), which kitti-motions needs");
-DEFINE_string(kitti_root, "", "directory of the KITTI odometry data: its poses are --poses");
-DEFINE_int32(every, 0, "kitti-motions takes each n-th motion; 0: 20, with --quick 100");
-DEFINE_bool(resume, false, "continue an interrupted run of the same flags in --output");
-DEFINE_bool(overwrite, false, "begin anew where --output has results");
-DEFINE_bool(figures, true, "draw figures with rigel_plot.py (python3-matplotlib)");
+              "directory of KITTI odometry poses (00.txt, ...), for the experiment kitti-motions");
+DEFINE_string(kitti_root, "",
+              "directory of the KITTI odometry data; uses the poses in it, as --poses");
+DEFINE_int32(every, 0, "kitti-motions takes every n-th motion. 0: 20, with --quick 100");
+DEFINE_bool(resume, false, "continue an interrupted run with the same flags in --output");
+DEFINE_bool(overwrite, false, "discard earlier results in --output");
+DEFINE_bool(figures, true, "draw figures with rigel_plot.py (needs python3-matplotlib)");
 DEFINE_string(html, "",
-              "write tables and figures of the run to this one file, too; it needs no other file");
-DEFINE_bool(no_times, false, "leave times out, so that two runs give the same files");
-DEFINE_uint64(seed, 1, "the same seed makes the same frame pairs");
-DEFINE_int32(threads, 0, "pairs worked on at a time; 0: all cores. Results do not depend on it");
+              "also write all tables and figures to this one HTML file, which needs no other file");
+DEFINE_bool(no_times, false,
+            "leave run times out of the results, which are then equal in every run");
+DEFINE_uint64(seed, 1, "seed of the random numbers. The same seed gives the same frame pairs");
+DEFINE_int32(threads, 0,
+             "number of threads, 0 to 1024; 0: one per core. Results do not depend on it");
 
 namespace rigel {
 namespace {
@@ -43,24 +49,27 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kUsage[] =
-    "rigel_experiment: the experiments of the paper, and more on the same scene.\n"
+    "rigel_experiment: runs the experiments of the paper and further ones on the same scene.\n"
     "\n"
     "  rigel_experiment --name=all --quick --output=DIR\n"
     "\n"
-    "At each point of an experiment (a motion and, say, a noise level) all of its solvers run on\n"
-    "the same frame pairs, in the paper's RANSAC (the largest inlier count wins) and in Rigel's,\n"
-    "then the refinement. Per experiment NAME the directory gets NAME.json, NAME.csv, NAME.txt\n"
-    "(table) and figures/NAME*.png and .svg; and claims.md, claims.json: each claim of the paper\n"
-    "with a verdict, by rigel_claims.py (python3). NAME.points.jsonl keeps finished points: after\n"
-    "an interruption the same command with --resume continues. One run at a time works in a\n"
-    "directory. docs/experiments.md has sizes and times.\n";
+    "A point of an experiment is one motion with, for example, one noise level. At each point\n"
+    "all solvers of the experiment run on the same frame pairs, with RANSAC as in the paper\n"
+    "(maximum inlier count) and with Rigel's RANSAC, each followed by the refinement.\n"
+    "\n"
+    "The directory gets, for each experiment NAME, NAME.json, NAME.csv, NAME.txt (the table) and\n"
+    "figures/NAME*.png and .svg. claims.md and claims.json hold the verdict of rigel_claims.py\n"
+    "(needs python3) on each claim of the paper. NAME.points.jsonl stores finished points: to\n"
+    "continue an interrupted run, repeat the command with --resume. Only one run at a time can\n"
+    "use a directory. docs/experiments.md lists the experiments with their run times.\n";
 
 int PrintList() {
+  constexpr size_t kNameColumns = 20;  // columns: the longest name and two blanks
   for (const ExperimentSpec& spec : ExperimentCatalogue()) {
-    std::cout << spec.name << std::string(20 - std::string(spec.name).size(), ' ') << spec.about
-              << "\n";
+    std::cout << spec.name << std::string(kNameColumns - std::string(spec.name).size(), ' ')
+              << spec.about << "\n";
   }
-  return FlushStdout() ? kExitDone : kExitFailed;
+  return ExitCode(FlushStdout());
 }
 
 std::string OutputPath(const std::string& name) { return (fs::path(FLAGS_output) / name).string(); }
@@ -104,11 +113,8 @@ bool HtmlHasAPlaceOfItsOwn(const std::vector<ExperimentPlan>& plans, const std::
 // False with a message on stderr. From then on no other run works in the directory.
 bool PrepareOutput(const std::vector<ExperimentPlan>& plans, RunLock* lock) {
   std::error_code code;
-  fs::create_directories(FLAGS_output, code);
-  if (code) {
-    return Failed(PrintablePath(FLAGS_output) + ": cannot be made: " + code.message());
-  }
   std::string error;
+  if (!MakeDirectory(FLAGS_output, &error)) return Failed(error);
   if (!lock->Take(OutputPath("rigel_experiment.lock"), &error)) return Failed(error);
   for (const std::string& directory : {FLAGS_output, OutputPath("figures")}) {
     RemoveLeftOvers(directory, [](const std::string&) { return true; });
@@ -116,38 +122,50 @@ bool PrepareOutput(const std::vector<ExperimentPlan>& plans, RunLock* lock) {
   for (const ExperimentPlan& plan : plans) {
     if (FLAGS_resume || FLAGS_overwrite || !fs::exists(StorePath(plan), code)) continue;
     return Failed(PrintablePath(StorePath(plan)) +
-                  ": is of an earlier run; --resume continues it, --overwrite begins anew");
+                  ": is of an earlier run; --resume continues it, --overwrite discards it");
   }
   return true;
 }
 
-bool RunPoints(const std::vector<ExperimentPlan>& plans, std::vector<ExperimentStore>* stores) {
+void DropTimes(std::vector<ExperimentRow>* rows) {
+  for (ExperimentRow& row : *rows) {
+    row.summary.ransac_ms.reset();
+    row.summary.refine_ms.reset();
+  }
+}
+
+// Opens the store of each plan. *num_pairs is how many are still to be worked on.
+bool OpenStores(const std::vector<ExperimentPlan>& plans, std::vector<ExperimentStore>* stores,
+                int* num_pairs) {
   stores->resize(plans.size());
+  *num_pairs = 0;
   std::string error;
-  int num_pairs = 0;
   for (size_t k = 0; k < plans.size(); ++k) {
-    if (!(*stores)[k].Open(StorePath(plans[k]), plans[k], FLAGS_resume, &error)) {
-      return Failed(error);
-    }
+    ExperimentStore& store = (*stores)[k];
+    if (!store.Open(StorePath(plans[k]), plans[k], FLAGS_resume, &error)) return Failed(error);
     for (const ExperimentPoint& point : plans[k].points) {
-      if (!(*stores)[k].Has(point)) num_pairs += CountPairs(plans[k], point);
+      if (!store.Has(point)) *num_pairs += CountPairs(plans[k], point);
     }
   }
-  Progress progress("rigel_experiment, pairs", num_pairs);
+  return true;
+}
+
+// Points that the stores do not have yet.
+bool RunPoints(const std::vector<ExperimentPlan>& plans, std::vector<ExperimentStore>* stores) {
+  int num_pairs = 0;
+  if (!OpenStores(plans, stores, &num_pairs)) return false;
+  Progress progress(ProgramName() + ", pairs", num_pairs);
+  const auto step = [&] { progress.Step(); };
+  std::string error;
   for (size_t k = 0; k < plans.size(); ++k) {
     ExperimentStore& store = (*stores)[k];
     for (const ExperimentPoint& point : plans[k].points) {
       if (store.Has(point)) continue;
       std::vector<ExperimentRow> rows;
-      if (!RunExperimentPoint(
-              plans[k], point, store.rows(), [&] { progress.Step(); }, &rows, &error)) {
+      if (!RunExperimentPoint(plans[k], point, store.rows(), step, &rows, &error)) {
         return Failed(error);
       }
-      for (ExperimentRow& row : rows) {
-        if (!FLAGS_no_times) continue;
-        row.summary.ransac_ms.reset();
-        row.summary.refine_ms.reset();
-      }
+      if (FLAGS_no_times) DropTimes(&rows);
       if (!store.Add(point, rows, &error)) return Failed(error);
     }
   }
@@ -182,7 +200,7 @@ ScriptOutcome RunOnResults(const std::string& name, const std::vector<std::strin
   const ScriptOutcome outcome = RunScript(name, arguments, &error);
   if (outcome == ScriptOutcome::kDone) return outcome;
   std::cerr << "no " << what << ": " << error << "\nThe results are in "
-            << PrintablePath(FLAGS_output) << "; once that is mended, get the " << what
+            << PrintablePath(FLAGS_output) << "; when this is fixed, get the " << what
             << " with\n  " << ScriptCommand(name, arguments) << "\n";
   return outcome;
 }
@@ -202,77 +220,101 @@ bool DrawFigures() {
          (outcome == ScriptOutcome::kUnavailable && FLAGS_html.empty());
 }
 
-int Run() {
-  if (FLAGS_list) return PrintList();
-  const std::vector<std::string> names = SplitCommas(FLAGS_name);
-  if (names.empty())
-    return UsageError("--name is missing; expected all or some of " + ExperimentNames());
-  if (FLAGS_output.empty()) return UsageError("--output is missing: name a directory");
-  if (FLAGS_pairs < 0) return UsageError("--pairs: expected at least 1");
-  if (FLAGS_every < 0) return UsageError("--every: expected at least 1");
-  if (FLAGS_threads < 0 || FLAGS_threads > 1024) return UsageError("--threads: expected 0 to 1024");
+bool OptionsFromFlags(ExperimentOptions* options, std::string* error) {
+  if (FLAGS_output.empty()) return Refuse("--output is missing: name a directory", error);
+  if (FLAGS_pairs < 0) return Refuse("--pairs: expected at least 1", error);
+  if (FLAGS_every < 0) return Refuse("--every: expected at least 1", error);
+  if (!CheckThreads(FLAGS_threads, 0, error)) return false;
   if (FLAGS_resume && FLAGS_overwrite) {
-    return UsageError("--resume and --overwrite contradict each other");
+    return Refuse("--resume and --overwrite contradict each other", error);
   }
   if (!FLAGS_poses.empty() && !FLAGS_kitti_root.empty()) {
-    return UsageError("--poses and --kitti_root name the same; give one of them");
+    return Refuse("--poses and --kitti_root name the same; give one of them", error);
   }
-  ExperimentOptions options;
-  options.quick = FLAGS_quick;
-  options.pairs = FLAGS_pairs;
-  options.every = FLAGS_every;
-  options.seed = FLAGS_seed;
-  options.num_threads = FLAGS_threads > 0
-                            ? FLAGS_threads
-                            : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  options.poses = FLAGS_poses;
-  if (!FLAGS_kitti_root.empty()) options.poses = (fs::path(FLAGS_kitti_root) / "poses").string();
+  options->quick = FLAGS_quick;
+  options->pairs = FLAGS_pairs;
+  options->every = FLAGS_every;
+  options->seed = FLAGS_seed;
+  options->num_threads = FLAGS_threads > 0
+                             ? FLAGS_threads
+                             : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  options->poses = FLAGS_poses;
+  if (!FLAGS_kitti_root.empty()) options->poses = (fs::path(FLAGS_kitti_root) / "poses").string();
+  return true;
+}
 
-  const bool all = names.size() == 1 && names[0] == "all";
+bool NeedsPoses(const ExperimentSpec& spec) { return spec.variable == ExperimentVariable::kNone; }
+
+// All experiments for which there is what they need; says on stderr which are left out.
+std::vector<const ExperimentSpec*> AllExperiments(const ExperimentOptions& options) {
   std::vector<const ExperimentSpec*> specs;
-  if (all) {
-    for (const ExperimentSpec& spec : ExperimentCatalogue()) specs.push_back(&spec);
+  for (const ExperimentSpec& spec : ExperimentCatalogue()) {
+    if (NeedsPoses(spec) && options.poses.empty()) {
+      std::cerr << spec.name << ": left out, it needs --poses=DIR or --kitti_root=DIR\n";
+    } else {
+      specs.push_back(&spec);
+    }
   }
+  return specs;
+}
+
+bool ExperimentsFromFlags(const ExperimentOptions& options,
+                          std::vector<const ExperimentSpec*>* specs, std::string* error) {
+  const std::vector<std::string> names = SplitCommas(FLAGS_name);
+  if (names == std::vector<std::string>{"all"}) {
+    *specs = AllExperiments(options);
+    return true;
+  }
+  if (names.empty())
+    return Refuse("--name is missing; expected all or some of " + ExperimentNames(), error);
   for (const std::string& name : names) {
-    if (all) break;
     const ExperimentSpec* spec = FindExperiment(name);
     if (spec == nullptr) {
-      return UsageError("--name: there is no experiment '" + name + "'; expected all or some of " +
-                        ExperimentNames());
+      return Refuse("--name: there is no experiment '" + name + "'; expected all or some of " +
+                        ExperimentNames(),
+                    error);
     }
-    if (std::find(specs.begin(), specs.end(), spec) != specs.end()) {
-      return UsageError("--name: '" + name + "' is named twice");
+    if (std::find(specs->begin(), specs->end(), spec) != specs->end()) {
+      return Refuse("--name: '" + name + "' is named twice", error);
     }
-    specs.push_back(spec);
+    if (NeedsPoses(*spec) && options.poses.empty()) {
+      return Refuse(name + " needs --poses=DIR (00.txt, ...) or --kitti_root=DIR", error);
+    }
+    specs->push_back(spec);
   }
+  return true;
+}
+
+bool MakePlans(const std::vector<const ExperimentSpec*>& specs, const ExperimentOptions& options,
+               std::vector<ExperimentPlan>* plans, std::string* error) {
+  plans->resize(specs.size());
+  for (size_t k = 0; k < specs.size(); ++k) {
+    if (!PlanExperiment(*specs[k], options, &(*plans)[k], error)) return false;
+  }
+  return true;
+}
+
+int Run() {
+  if (FLAGS_list) return PrintList();
+  ExperimentOptions options;
+  std::vector<const ExperimentSpec*> specs;
   std::vector<ExperimentPlan> plans;
-  for (const ExperimentSpec* spec : specs) {
-    if (spec->variable == ExperimentVariable::kNone && options.poses.empty()) {
-      if (!all) {
-        return UsageError(std::string(spec->name) +
-                          " needs --poses=DIR (00.txt, ...) or --kitti_root=DIR");
-      }
-      std::cerr << spec->name << ": left out, it needs --poses=DIR or --kitti_root=DIR\n";
-      continue;
-    }
-    ExperimentPlan plan;
-    std::string error;
-    if (!PlanExperiment(*spec, options, &plan, &error)) {
-      std::cerr << error << "\n";
-      return kExitFailed;
-    }
-    plans.push_back(std::move(plan));
-  }
   std::string error;
+  if (!OptionsFromFlags(&options, &error) || !ExperimentsFromFlags(options, &specs, &error)) {
+    return UsageError(error);
+  }
+  if (!MakePlans(specs, options, &plans, &error)) return Failure(error);
   if (!HtmlHasAPlaceOfItsOwn(plans, options.poses, &error)) return UsageError(error);
+
   RunLock lock;
   std::vector<ExperimentStore> stores;
-  if (!PrepareOutput(plans, &lock) || !HtmlWritable() || !RunPoints(plans, &stores))
+  if (!PrepareOutput(plans, &lock) || !HtmlWritable() || !RunPoints(plans, &stores)) {
     return kExitFailed;
+  }
   bool ok = WriteResults(plans, stores);
   ok = JudgeClaims() && ok;
   ok = DrawFigures() && ok;
-  return ok ? kExitDone : kExitFailed;
+  return ExitCode(ok);
 }
 
 }  // namespace

@@ -1,33 +1,25 @@
 #include "rigel/tools/tool.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <memory>
 #include <sstream>
-#include <system_error>
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
 #include "rigel/problems/io/csv.h"
 #include "rigel/problems/io/exception_message.h"
-#include "rigel/problems/io/input_file.h"
-#include "rigel/problems/io/match_file.h"
-#include "rigel/problems/io/output_place.h"
 #include "rigel/problems/io/version.h"
-#include "rigel/problems/io/whole_file.h"
+#include "rigel/tools/flag_files.h"
+#include "rigel/tools/outputs.h"
 
 // gflags leaves the process through this pointer, with code 1; it is not in a public header.
 namespace google {
@@ -36,8 +28,6 @@ extern void (*gflags_exitfunc)(int);
 
 namespace rigel {
 namespace {
-
-std::string ProgramName() { return gflags::ProgramInvocationShortName(); }
 
 void PointToHelp() { std::cerr << "Try '" << ProgramName() << " --help'.\n"; }
 
@@ -68,105 +58,43 @@ std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
   return own;
 }
 
-// The name of a flag as it is given, "--name=value"; empty if it is none.
-std::string FlagName(const std::string& argument) {
-  const size_t begin = argument.find_first_not_of('-');
-  if (begin == 0 || begin > 2 || begin == std::string::npos) return "";
-  return argument.substr(begin, std::min(argument.find('='), argument.size()) - begin);
-}
-
-// The flag files of the command line: inputs, too.
-std::vector<std::string>& FlagFiles() {
-  static std::vector<std::string> files;
-  return files;
-}
-
-// gflags reads the flag files that a flag file names, and those of an environment variable, until
-// the stack ends where they name each other. Of one file all is read that a user may want; a
-// message if there is more to it. gflags opens it again, which a pipe does not bear.
-std::string FlagFileError(const std::string& path) {
-  // Bytes of one file: flags are lines that people write.
-  constexpr size_t kMaxBytes = 1 << 20;
-  const std::string flag = "--flagfile=" + PrintablePath(path) + ": ";
-  std::error_code code;
-  const auto type = std::filesystem::status(path, code).type();
-  if (type != std::filesystem::file_type::regular && std::filesystem::exists(path, code)) {
-    return flag + "no regular file, expected one";
+// "--name=default", or whether a switch is on.
+std::string FlagWithDefault(const gflags::CommandLineFlagInfo& flag) {
+  const std::string name = "--" + flag.name;
+  if (flag.type == "bool") {
+    return name +
+           (flag.default_value == "true" ? "  (on; --no" + flag.name + " is off)" : "  (off)");
   }
-  FlagFiles().push_back(path);
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return flag + "cannot be opened: " + std::strerror(errno);
-  std::string text(kMaxBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad()) return flag + "cannot be read";
-  if (file) return flag + "larger than 1 MiB, expected flags, one a line";
-  text.resize(static_cast<size_t>(file.gcount()));
-  std::istringstream lines(text);
-  int number = 1;
-  for (std::string line; std::getline(lines, line); ++number) {
-    line.erase(0, std::min(line.find_first_not_of(" \t\r\v\f"), line.size()));
-    const std::string name = FlagName(line);
-    if (name == "flagfile" || name == "fromenv" || name == "tryfromenv") {
-      return flag + "line " + std::to_string(number) + ": --" + name +
-             " is not taken from a flag file, only from the command line";
+  return name + "=" + (flag.default_value.empty() ? "\"\"" : PlainValue(flag, flag.default_value));
+}
+
+void PrintWrapped(const std::string& text) {
+  constexpr size_t kColumns = 92;  // of a line of text, which an indent of 6 fills up to 98
+  std::istringstream words(text);
+  std::string line;
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > kColumns) {
+      std::cout << "      " << line << "\n";
+      line.clear();
     }
+    line += (line.empty() ? "" : " ") + word;
   }
-  return "";
-}
-
-// A message if a flag file is named that is not to be read.
-std::string FlagFilesError(int argc, char** argv) {
-  for (int k = 1; k < argc && std::strcmp(argv[k], "--") != 0; ++k) {
-    const std::string argument = argv[k];
-    const std::string name = FlagName(argument);
-    if (name != "flagfile" && name != "fromenv" && name != "tryfromenv") continue;
-    const size_t equals = argument.find('=');
-    const bool next = equals == std::string::npos;
-    if (next && k + 1 == argc) return "";  // no value: gflags tells it
-    for (const std::string& part : SplitCommas(next ? argv[k + 1] : argument.substr(equals + 1))) {
-      const std::string error =
-          name == "flagfile" ? FlagFileError(part)
-          : part == "flagfile"
-              ? "--" + name + "=flagfile: a flag file is only taken from the command line"
-              : "";
-      if (!error.empty()) return error;
-    }
-  }
-  return "";
+  std::cout << "      " << line << "\n";
 }
 
 void PrintHelp(const std::string& usage) {
   std::cout << usage << "\nFlags:\n";
   for (const auto& flag : OwnFlags()) {
-    std::string head = "  --" + flag.name;
-    if (flag.type != "bool")
-      head += "=" + (flag.default_value.empty() ? "\"\"" : PlainValue(flag, flag.default_value));
-    else
-      head += flag.default_value == "true" ? "  (on; --no" + flag.name + " is off)" : "  (off)";
-    std::cout << head << "\n";
-    // Wrapped at 92 columns behind an indent of 6.
-    std::string line;
-    const auto flush = [&] {
-      if (!line.empty()) std::cout << "      " << line << "\n";
-      line.clear();
-    };
-    std::string word;
-    for (const char c : flag.description + " ") {
-      if (c != ' ') {
-        word += c;
-        continue;
-      }
-      if (line.size() + word.size() + 1 > 92) flush();
-      line += (line.empty() ? "" : " ") + word;
-      word.clear();
-    }
-    flush();
+    std::cout << "  " << FlagWithDefault(flag) << "\n";
+    PrintWrapped(flag.description);
   }
   std::cout
       << "\nExit code: 0 done, 1 failed, 2 wrong flag, 3 a bound that a flag set was missed.\n";
 }
 
 }  // namespace
+
+std::string ProgramName() { return gflags::ProgramInvocationShortName(); }
 
 int RunProgram(int argc, char** argv, const std::string& usage, int (*run)()) {
   // A write then fails, and that is told.
@@ -223,6 +151,13 @@ int UsageError(const std::string& message) {
   return kExitUsage;
 }
 
+int Failure(const std::string& message) {
+  std::cerr << message << "\n";
+  return kExitFailed;
+}
+
+int ExitCode(bool ok) { return ok ? kExitDone : kExitFailed; }
+
 std::vector<std::pair<std::string, std::string>> FlagValues(
     const std::vector<std::string>& without) {
   std::vector<std::pair<std::string, std::string>> values;
@@ -242,109 +177,31 @@ std::vector<std::string> GivenFlags() {
   return names;
 }
 
-bool FlushStdout() {
-  if (std::cout.flush()) return true;
-  std::cerr << ProgramName() << ": stdout: cannot be written\n";
+bool IsGiven(const std::string& flag) { return !FirstGiven({flag}).empty(); }
+
+std::string FirstGiven(const std::vector<std::string>& flags) {
+  const std::vector<std::string> given = GivenFlags();
+  const auto first = std::find_if(flags.begin(), flags.end(), [&](const std::string& flag) {
+    return std::find(given.begin(), given.end(), flag) != given.end();
+  });
+  return first == flags.end() ? "" : *first;
+}
+
+bool Refuse(const std::string& message, std::string* error) {
+  *error = message;
   return false;
 }
 
-bool IsStdout(const std::string& path) {
-  return path == "-" || (!path.empty() && FollowLinks(path).descriptor == STDOUT_FILENO);
+bool WrongValue(const std::string& flag, const std::string& value, const std::string& expected,
+                std::string* error) {
+  return Refuse("--" + flag + "=" + value + ": expected " + expected, error);
 }
 
-bool WriteOutput(const std::string& path, const std::string& text) {
-  if (path.empty()) return true;
-  if (IsStdout(path)) {
-    std::cout << text;
-    return FlushStdout();
-  }
-  std::string error;
-  if (WriteWholeFile(path, text, &error)) return true;
-  std::cerr << error << "\n";
-  return false;
-}
-
-bool SameOutputFile(const std::string& path1, const std::string& path2) {
-  if (path1.empty() || path2.empty() || IsStdout(path1) || IsStdout(path2)) return false;
-  return SamePlace(FollowLinks(path1), FollowLinks(path2));
-}
-
-bool OutputsDiffer(const std::vector<OutputFlag>& outputs, std::string* error) {
-  OutputPlace out;
-  out.kind = OutputPlace::Kind::kDescriptor;
-  out.descriptor = STDOUT_FILENO;
-  const bool has_stdout = fstat(STDOUT_FILENO, &out.status) == 0;
-  for (size_t k = 0; k < outputs.size(); ++k) {
-    const auto& [flag, file] = outputs[k];
-    const std::string value = "--" + flag + "=" + file;
-    for (size_t i = 0; i < k; ++i) {
-      const auto& [first_flag, first_file] = outputs[i];
-      if (IsStdout(file) && IsStdout(first_file)) {
-        *error = value + ": stdout has that of --" + first_flag +
-                 " already; name a file for one of them";
-        return false;
-      }
-      if (SameOutputFile(first_file, file)) {
-        *error = value + ": that of --" + first_flag +
-                 " goes to this file already; name another for one of them";
-        return false;
-      }
-    }
-    if (has_stdout && !file.empty() && !IsStdout(file) && SamePlace(FollowLinks(file), out)) {
-      *error = value + ": stdout goes to this file already; name another";
-      return false;
-    }
-  }
-  return true;
-}
-
-bool OutputsAreNoInputs(const std::vector<OutputFlag>& outputs,
-                        const std::vector<std::string>& inputs, std::string* error) {
-  std::vector<std::pair<std::string, struct stat>> files;
-  struct stat status;
-  if (fstat(STDOUT_FILENO, &status) == 0 && S_ISREG(status.st_mode)) {
-    files.emplace_back("stdout", status);
-  }
-  for (const OutputFlag& output : outputs) {
-    if (output.second.empty() || output.second == "-") continue;
-    const OutputPlace place = FollowLinks(output.second);
-    if (S_ISREG(place.status.st_mode)) {
-      files.emplace_back("--" + output.first + "=" + output.second, place.status);
-    }
-  }
-  if (files.empty()) return true;
-  std::vector<std::string> all = inputs;
-  all.insert(all.end(), FlagFiles().begin(), FlagFiles().end());
-  for (const std::string& input : all) {
-    if ((input == "-" ? fstat(STDIN_FILENO, &status) : stat(input.c_str(), &status)) != 0) continue;
-    for (const auto& [output, of_output] : files) {
-      if (status.st_dev != of_output.st_dev || status.st_ino != of_output.st_ino) continue;
-      *error = output + ": is the input " + PrintablePath(input == "-" ? "stdin" : input) +
-               ", which it would destroy";
-      return false;
-    }
-  }
-  return true;
-}
-
-bool ReadInput(const std::string& path, std::string* text) {
-  // Bytes, as for any JSON (kMaxJsonBytes): a wrong file must not fill the memory.
-  constexpr size_t kMaxBytes = size_t{1} << 30;
-  InputBytes bytes;
-  std::string error;
-  if (!ReadInputFile(path, &bytes, &error, kMaxBytes)) {
-    std::cerr << error << "\n";
-    return false;
-  }
-  std::string_view input = bytes.text();
-  int64_t line;
-  if (!CheckText(&input, &line, &error)) {
-    std::cerr << PrintablePath(InputName(path)) << (line > 0 ? ":" + std::to_string(line) : "")
-              << ": " << error << ", expected UTF-8 text\n";
-    return false;
-  }
-  *text = std::string(input);
-  return true;
+bool CheckThreads(int threads, int least, std::string* error) {
+  constexpr int kMost = 1024;  // threads: more than any machine of today has cores
+  if (threads >= least && threads <= kMost) return true;
+  return WrongValue("threads", std::to_string(threads),
+                    std::to_string(least) + " to " + std::to_string(kMost), error);
 }
 
 std::vector<std::string> SplitCommas(const std::string& text) {
@@ -359,35 +216,6 @@ std::vector<std::string> SplitCommas(const std::string& text) {
     }
   }
   return parts;
-}
-
-Progress::Progress(std::string what, int total)
-    : what_(std::move(what)), total_(total), terminal_(isatty(STDERR_FILENO) != 0) {}
-
-Progress::~Progress() {
-  if (terminal_ && shown_) std::cerr << "\r\033[K" << std::flush;
-}
-
-void Progress::Step() {
-  if (!terminal_) return;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  ++done_;
-  Show("");
-}
-
-void Progress::Note(const std::function<std::string()>& text) {
-  if (!terminal_) return;
-  constexpr std::chrono::milliseconds kPause(300);
-  const std::lock_guard<std::mutex> lock(mutex_);
-  const auto now = std::chrono::steady_clock::now();
-  if (now - noted_ < kPause) return;
-  noted_ = now;
-  Show("; " + text());
-}
-
-void Progress::Show(const std::string& note) {
-  shown_ = true;
-  std::cerr << "\r" << what_ << ": " << done_ << " of " << total_ << note << "\033[K" << std::flush;
 }
 
 }  // namespace rigel

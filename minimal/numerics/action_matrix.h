@@ -25,6 +25,10 @@ struct ActionMatrix {
   double entries[kSize + 2][kSize];
 };
 
+// Least pivot of the reduction to Hessenberg form. A zero would split the matrix; a number as tiny
+// as this, where entries are near 1, does not move its eigenvalues.
+inline constexpr double kLeastPivot = 1e-30;
+
 // The real solutions that a reduced system has. Loops over parts of rows begin at multiples of
 // four, where that takes in zeros only, so that they vectorize without remainders.
 template <int kSize>
@@ -113,38 +117,56 @@ class RealSolutions {
     }
     double factors[kSize] = {};
     for (int m = 1; m < kSize; ++m) {
-      int pivot = m;
-      for (int i = m + 1; i < kSize; ++i) {
-        if (std::abs(a_[i][m - 1]) > std::abs(a_[pivot][m - 1])) pivot = i;
-      }
-      const int begin = Down(m);
-      if (pivot != m) {
-        for (int k = Down(m - 1); k < kSize; ++k) std::swap(a_[m][k], a_[pivot][k]);
-        for (int r = 0; r < kSize + 2; ++r) std::swap(a_[r][m], a_[r][pivot]);
-      }
-      // A zero would split the matrix; a tiny number does not move its eigenvalues.
-      if (std::abs(a_[m][m - 1]) < 1e-30) a_[m][m - 1] = 1e-30;
-      const double inv = 1.0 / a_[m][m - 1];
-      factors[m] = 0.0;
-      bool any = false;
-      for (int i = m + 1; i < kSize; ++i) {
-        const double factor = a_[i][m - 1] * inv;
-        factors[i] = factor;
-        if (factor == 0.0) continue;
-        any = true;
-        for (int k = begin; k < kSize; k += 4) {
-          for (int l = 0; l < 4; ++l) a_[i][k + l] -= factor * a_[m][k + l];
-        }
-      }
-      if (!any) continue;
-      for (int r = 0; r < kSize + 2; ++r) {
-        double sum[4] = {0.0, 0.0, 0.0, 0.0};
-        for (int i = begin; i < kSize; i += 4) {
-          for (int l = 0; l < 4; ++l) sum[l] += factors[i + l] * a_[r][i + l];
-        }
-        a_[r][m] += (sum[0] + sum[1]) + (sum[2] + sum[3]);
+      BringPivotTo(m);
+      if (EliminateBelow(m, factors)) AddToColumn(m, factors);
+    }
+    ScaleSubdiagonal();
+  }
+
+  // Exchanges row m and column m with those of the largest entry of column m - 1 from row m on.
+  void BringPivotTo(int m) {
+    int pivot = m;
+    for (int i = m + 1; i < kSize; ++i) {
+      if (std::abs(a_[i][m - 1]) > std::abs(a_[pivot][m - 1])) pivot = i;
+    }
+    if (pivot != m) {
+      for (int k = Down(m - 1); k < kSize; ++k) std::swap(a_[m][k], a_[pivot][k]);
+      for (int r = 0; r < kSize + 2; ++r) std::swap(a_[r][m], a_[r][pivot]);
+    }
+    if (std::abs(a_[m][m - 1]) < kLeastPivot) a_[m][m - 1] = kLeastPivot;
+  }
+
+  // Subtracts multiples of row m from the rows i below it, which makes column m - 1 zero there.
+  // Writes their factors from m on, that of m itself as 0. False if all are zero.
+  bool EliminateBelow(int m, double* factors) {
+    const int begin = Down(m);
+    const double inv = 1.0 / a_[m][m - 1];
+    factors[m] = 0.0;
+    bool any = false;
+    for (int i = m + 1; i < kSize; ++i) {
+      const double factor = a_[i][m - 1] * inv;
+      factors[i] = factor;
+      if (factor == 0.0) continue;
+      any = true;
+      for (int k = begin; k < kSize; k += 4) {
+        for (int l = 0; l < 4; ++l) a_[i][k + l] -= factor * a_[m][k + l];
       }
     }
+    return any;
+  }
+
+  // The inverse step on the columns: adds the same multiples of the columns after m to column m.
+  void AddToColumn(int m, const double* factors) {
+    for (int r = 0; r < kSize + 2; ++r) {
+      double sum[4] = {0.0, 0.0, 0.0, 0.0};
+      for (int i = Down(m); i < kSize; i += 4) {
+        for (int l = 0; l < 4; ++l) sum[l] += factors[i + l] * a_[r][i + l];
+      }
+      a_[r][m] += (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    }
+  }
+
+  void ScaleSubdiagonal() {
     double scale[kSize];
     scale[0] = 1.0;
     for (int k = 1; k < kSize; ++k) scale[k] = scale[k - 1] * a_[k][k - 1];

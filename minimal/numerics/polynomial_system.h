@@ -130,95 +130,142 @@ class MacaulayMatrix {
 
   // `leading[k]`: how many monomials of degree kDegree - k are leading monomials; all, or else the
   // best conditioned ones are taken. None may be of degree 1 or 0, and at most one of degree
-  // kDegree is left over. False if a pivot vanishes or more than kSize monomials are left.
+  // kDegree is left over. False if a pivot vanishes or not exactly kSize monomials are left.
   template <int kSize>
   bool Reduce(const int* leading, int num_degrees, ActionMatrix<kSize>* action) {
-    int monomial[kColumns];  // of a column
-    for (int c = 0; c < kColumns; ++c) monomial[c] = kColumns - 1 - c;
-    int pivot_of[kColumns];  // of a monomial; -1: none
+    NormalForms<kSize> forms;
+    if (!EliminateLeading(leading, num_degrees, forms.pivot_of)) return false;
+    if (!forms.FindBasis(monomial_)) return false;
+    // One monomial of degree kDegree is left over, and x times it is in no row.
+    const bool left_over = forms.basis[kSize - 1] >= NumMonomials(kDegree - 1);
+    const int num_direct = kSize - (left_over ? 1 : 0);
+    SubstituteBack(left_over ? 0 : FirstPivotOf(forms, num_direct), &forms);
+    for (int b = 0; b < kSize; ++b) std::fill_n(action->entries[b], kSize, 0.0);
+    for (int b = 0; b < num_direct; ++b) {
+      forms.Add(Times(forms.basis[b], 1, 0), 1.0, action->entries[b]);
+    }
+    return !left_over || ActionOnLeftOver(forms, action->entries[kSize - 1]);
+  }
+
+ private:
+  static constexpr int kStride = (kColumns + 3) & ~3;  // of a row, with zeros behind it
+  // Entries that a search for the largest pivot may look at. More searches condition the matrix
+  // better and take more time: rigel_benchmark --solvers=6pt-stewenius prints both effects.
+  static constexpr int kMaxSearch = 1000;
+  static constexpr int kMaxPivots = kMaxRows < kColumns ? kMaxRows : kColumns;
+  // Rows are scaled to largest coefficient 1: a pivot below this is what rounding left of a zero.
+  static constexpr double kLeastPivotOfRows = 1e-14;
+
+  // Index of the monomial m times x^i y^j.
+  static int Times(int m, int i, int j) {
+    const auto& e = kMonomials.exponents[m];
+    return kMonomials.index[e[0] + i][e[1] + j][e[2]];
+  }
+
+  // What every monomial is in terms of those that are left, the basis.
+  template <int kSize>
+  struct NormalForms {
+    int pivot_of[kColumns];  // of a monomial; -1: none, it is in the basis
+    int basis[kSize];        // monomials
+    int basis_column[kSize];
+    int basis_of[kColumns];             // of a monomial in it
+    double reduced[kMaxPivots][kSize];  // the leading monomial of a pivot
+
+    // False unless kSize monomials are left.
+    bool FindBasis(const int* monomial_of_column) {
+      int size = 0;
+      for (int m = 0; m < kColumns; ++m) {
+        if (pivot_of[m] >= 0) continue;
+        if (size == kSize) return false;
+        basis_of[m] = size;
+        basis[size++] = m;
+      }
+      for (int c = 0; c < kColumns; ++c) {
+        const int m = monomial_of_column[c];
+        if (pivot_of[m] < 0) basis_column[basis_of[m]] = c;
+      }
+      return size == kSize;
+    }
+
+    // sum += factor m.
+    void Add(int m, double factor, double* sum) const {
+      if (pivot_of[m] < 0) {
+        sum[basis_of[m]] += factor;
+      } else {
+        for (int k = 0; k < kSize; ++k) sum[k] += factor * reduced[pivot_of[m]][k];
+      }
+    }
+
+    // The share of the last monomial of the basis in the monomial m.
+    double ShareOfLast(int m) const {
+      if (m == basis[kSize - 1]) return 1.0;
+      return pivot_of[m] >= 0 ? reduced[pivot_of[m]][kSize - 1] : 0.0;
+    }
+  };
+
+  // Gaussian elimination, one pivot for each leading monomial. Writes the pivot of each monomial.
+  // False if a pivot vanishes.
+  bool EliminateLeading(const int* leading, int num_degrees, int* pivot_of) {
+    for (int c = 0; c < kColumns; ++c) monomial_[c] = kColumns - 1 - c;
     std::fill(pivot_of, pivot_of + kColumns, -1);
-    int rank = 0;
+    num_pivots_ = 0;
     int begin = 0;
     for (int k = 0; k < num_degrees; ++k) {
       const int end = kColumns - NumMonomials(kDegree - k - 1);
-      for (int c = begin; c < begin + leading[k]; ++c, ++rank) {
+      for (int c = begin; c < begin + leading[k]; ++c, ++num_pivots_) {
         // A search of all columns pays only where there are few left.
         const bool choose =
-            leading[k] < end - begin && (num_rows_ - rank) * (end - c) <= kMaxSearch;
-        if (!Pivot(rank, c, choose ? end : c + 1, monomial)) return false;
-        column_[rank] = c;
-        pivot_of[monomial[c]] = rank;
+            leading[k] < end - begin && (num_rows_ - num_pivots_) * (end - c) <= kMaxSearch;
+        if (!Pivot(num_pivots_, c, choose ? end : c + 1)) return false;
+        column_[num_pivots_] = c;
+        pivot_of[monomial_[c]] = num_pivots_;
       }
       begin = end;
     }
+    return true;
+  }
 
-    int basis[kSize];
-    int basis_column[kSize];
-    int basis_of[kColumns];  // of a monomial
-    int n = 0;
-    for (int m = 0; m < kColumns; ++m) {
-      if (pivot_of[m] >= 0) continue;
-      if (n == kSize) return false;
-      basis_of[m] = n;
-      basis[n++] = m;
-    }
-    for (int c = 0; c < kColumns; ++c) {
-      if (pivot_of[monomial[c]] < 0) basis_column[basis_of[monomial[c]]] = c;
-    }
-    const auto times = [](int m, int i, int j) {
-      const auto& e = kMonomials.exponents[m];
-      return kMonomials.index[e[0] + i][e[1] + j][e[2]];
-    };
-    const bool top_left = basis[n - 1] >= NumMonomials(kDegree - 1);
-    int first = rank;
-    for (int b = 0; b < n - (top_left ? 1 : 0); ++b) {
-      const int pivot = pivot_of[times(basis[b], 1, 0)];
+  // The first pivot that x times one of the first `count` monomials of the basis needs.
+  template <int kSize>
+  int FirstPivotOf(const NormalForms<kSize>& forms, int count) const {
+    int first = num_pivots_;
+    for (int b = 0; b < count; ++b) {
+      const int pivot = forms.pivot_of[Times(forms.basis[b], 1, 0)];
       if (pivot >= 0) first = std::min(first, pivot);
     }
-    if (top_left) first = 0;
+    return first;
+  }
 
-    // The leading monomials in terms of the others, from the last pivot back.
-    if (n != kSize) return false;
-    double reduced[kMaxPivots][kSize];
-    for (int p = rank - 1; p >= first; --p) {
+  // The leading monomials in terms of the basis, from the last pivot back to `first`.
+  template <int kSize>
+  void SubstituteBack(int first, NormalForms<kSize>* forms) const {
+    for (int p = num_pivots_ - 1; p >= first; --p) {
       const double* row = rows_[p];
-      double* out = reduced[p];
+      double* out = forms->reduced[p];
       for (int k = 0; k < kSize; ++k) {
-        out[k] = basis_column[k] > column_[p] ? -row[basis_column[k]] : 0.0;
+        const int column = forms->basis_column[k];
+        out[k] = column > column_[p] ? -row[column] : 0.0;
       }
-      for (int q = p + 1; q < rank; ++q) {
+      for (int q = p + 1; q < num_pivots_; ++q) {
         const double factor = row[column_[q]];
         if (factor == 0.0) continue;
-        for (int k = 0; k < kSize; ++k) out[k] -= factor * reduced[q][k];
+        for (int k = 0; k < kSize; ++k) out[k] -= factor * forms->reduced[q][k];
       }
     }
-    const auto add = [&](int m, double factor, double* out) {
-      if (pivot_of[m] < 0) {
-        out[basis_of[m]] += factor;
-      } else {
-        for (int k = 0; k < kSize; ++k) out[k] += factor * reduced[pivot_of[m]][k];
-      }
-    };
-    for (int b = 0; b < n; ++b) std::fill(action->entries[b], action->entries[b] + n, 0.0);
-    for (int b = 0; b < n - (top_left ? 1 : 0); ++b) {
-      add(times(basis[b], 1, 0), 1.0, action->entries[b]);
-    }
-    if (!top_left) return true;
+  }
 
-    // One monomial m of degree kDegree is left over, and x m is in no row. For s of degree
-    // kDegree - 1 let y s = a m + A and x s = b m + B, A and B of lower degree; then
-    // x (y s) = y (x s) says a (x m) - b (y m) = y B - x A. Two such s give x m.
-    const int top = basis[n - 1];
-    const auto share = [&](int m) {
-      return m == top ? 1.0 : pivot_of[m] >= 0 ? reduced[pivot_of[m]][n - 1] : 0.0;
-    };
+  // The row of x m for the monomial m of degree kDegree that is left over. For s of degree
+  // kDegree - 1 let y s = a m + A and x s = b m + B, A and B of lower degree; then
+  // x (y s) = y (x s) says a (x m) - b (y m) = y B - x A. Two such s give x m.
+  template <int kSize>
+  static bool ActionOnLeftOver(const NormalForms<kSize>& forms, double* row) {
     constexpr int kFirst = NumMonomials(kDegree - 2);
     constexpr int kCount = NumMonomials(kDegree - 1) - kFirst;
     double as[kCount], bs[kCount];
     int s1 = 0;
     for (int s = 0; s < kCount; ++s) {
-      as[s] = share(times(kFirst + s, 0, 1));
-      bs[s] = share(times(kFirst + s, 1, 0));
+      as[s] = forms.ShareOfLast(Times(kFirst + s, 0, 1));
+      bs[s] = forms.ShareOfLast(Times(kFirst + s, 1, 0));
       if (as[s] * as[s] + bs[s] * bs[s] > as[s1] * as[s1] + bs[s1] * bs[s1]) s1 = s;
     }
     int s2 = 0;
@@ -230,33 +277,28 @@ class MacaulayMatrix {
         s2 = s;
       }
     }
-    if (!(std::abs(det) > 1e-14)) return false;
-    double* out = action->entries[n - 1];
-    for (const int side : {0, 1}) {
-      const int s = side == 0 ? s1 : s2;
-      const double weight = side == 0 ? bs[s2] / det : -bs[s1] / det;
-      double A[kSize] = {};
-      double B[kSize] = {};
-      add(times(kFirst + s, 0, 1), 1.0, A);
-      add(times(kFirst + s, 1, 0), 1.0, B);
-      for (int k = 0; k < n - 1; ++k) {
-        if (B[k] != 0.0) add(times(basis[k], 0, 1), weight * B[k], out);
-        if (A[k] != 0.0) add(times(basis[k], 1, 0), -weight * A[k], out);
-      }
-    }
+    if (!(std::abs(det) > kLeastPivotOfRows)) return false;
+    AddCommutator(forms, kFirst + s1, bs[s2] / det, row);
+    AddCommutator(forms, kFirst + s2, -bs[s1] / det, row);
     return true;
   }
 
- private:
-  static constexpr int kStride = (kColumns + 3) & ~3;  // of a row, with zeros behind it
-  // Entries that a search for the largest pivot may look at. More searches condition the matrix
-  // better and take more time: rigel_benchmark --solvers=6pt-stewenius prints both effects.
-  static constexpr int kMaxSearch = 1000;
-  static constexpr int kMaxPivots = kMaxRows < kColumns ? kMaxRows : kColumns;
+  // row += weight (y B - x A) of the monomial s.
+  template <int kSize>
+  static void AddCommutator(const NormalForms<kSize>& forms, int s, double weight, double* row) {
+    double A[kSize] = {};
+    double B[kSize] = {};
+    forms.Add(Times(s, 0, 1), 1.0, A);
+    forms.Add(Times(s, 1, 0), 1.0, B);
+    for (int k = 0; k < kSize - 1; ++k) {
+      if (B[k] != 0.0) forms.Add(Times(forms.basis[k], 0, 1), weight * B[k], row);
+      if (A[k] != 0.0) forms.Add(Times(forms.basis[k], 1, 0), -weight * A[k], row);
+    }
+  }
 
   // Brings the largest entry of the rows from `rank` on and the columns [c, end) to (rank, c),
   // makes it 1 and clears the column below it.
-  bool Pivot(int rank, int c, int end, int* monomial) {
+  bool Pivot(int rank, int c, int end) {
     double best = 0.0;
     int best_row = rank;
     int best_column = c;
@@ -269,10 +311,10 @@ class MacaulayMatrix {
         }
       }
     }
-    if (!(best > 1e-14) || !std::isfinite(best)) return false;
+    if (!(best > kLeastPivotOfRows) || !std::isfinite(best)) return false;
     if (best_column != c) {
       for (int r = 0; r < num_rows_; ++r) std::swap(rows_[r][c], rows_[r][best_column]);
-      std::swap(monomial[c], monomial[best_column]);
+      std::swap(monomial_[c], monomial_[best_column]);
     }
     double* top = rows_[rank];
     if (best_row != rank) std::swap_ranges(top + c, top + kColumns, rows_[best_row] + c);
@@ -293,7 +335,9 @@ class MacaulayMatrix {
   }
 
   int num_rows_ = 0;
-  int column_[kMaxRows];  // of a pivot
+  int num_pivots_ = 0;
+  int column_[kMaxRows];    // of a pivot
+  int monomial_[kColumns];  // of a column
   alignas(32) double rows_[kMaxRows][kStride];
 };
 

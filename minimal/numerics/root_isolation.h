@@ -8,109 +8,42 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rigel/minimal/numerics/bernstein.h"
+#include "rigel/minimal/numerics/bracketed_newton.h"
 #include "rigel/minimal/numerics/polynomial_values.h"
 
 namespace rigel::polynomial_internal {
 
-// An interval with one root of p, and a first guess. Of `c` the root is x, of p it is 1 / x if
-// `reversed`, and -x or -1 / x if `mirrored`.
-struct Bracket {
-  double low, high, guess;
-  bool low_negative;  // the sign of p just above `low`
-  bool reversed, mirrored;
-};
-
 // The polynomial of a piece of the real line: c, or what c is for 1 / x, -x or -1 / x.
 template <int N>
 inline void PieceOf(const double* c, bool reversed, bool mirrored, double* piece) {
-  for (int k = 0; k <= N; ++k) {
-    const int from = reversed ? N - k : k;
-    piece[k] = mirrored && from % 2 == 1 ? -c[from] : c[from];
-  }
+  for (int k = 0; k <= N; ++k) piece[k] = PieceCoefficient(c, N, reversed, mirrored, k);
 }
 
-// The roots in `count` <= N brackets by Newton's method, safeguarded by halving. All at once: a
-// step of one depends on its last one, and the steps of the others fill the time.
+// A polynomial in the Bernstein basis on (low, low + width).
 template <int N>
-inline void BracketedNewton(const double* c, const Bracket* brackets, int count, double* roots) {
-  constexpr int kLanes = (N + 1) / 2 * 2;
-  if (count == 0) return;  // there is no bracket to fill the lanes with
-  double p[N + 1][kLanes], x[kLanes], low[kLanes], high[kLanes];
-  bool low_negative[kLanes], done[kLanes];
-  for (int l = 0; l < kLanes; ++l) {
-    const Bracket& bracket = brackets[l < count ? l : 0];
-    double piece[N + 1];
-    PieceOf<N>(c, bracket.reversed, bracket.mirrored, piece);
-    for (int k = 0; k <= N; ++k) p[k][l] = piece[k];
-    x[l] = bracket.guess;
-    low[l] = bracket.low;
-    high[l] = bracket.high;
-    low_negative[l] = bracket.low_negative;
-    done[l] = l >= count;
-  }
-  int left = count;
-  for (int n = 0; n < 100 && left > 0; ++n) {
-    double value[kLanes], slope[kLanes], next[kLanes];
-    for (int l = 0; l < kLanes; ++l) {
-      value[l] = p[N][l];
-      slope[l] = 0.0;
-    }
-    for (int k = N - 1; k >= 0; --k) {
-      for (int l = 0; l < kLanes; ++l) {
-        slope[l] = slope[l] * x[l] + value[l];
-        value[l] = value[l] * x[l] + p[k][l];
-      }
-    }
-    for (int l = 0; l < kLanes; ++l) next[l] = x[l] - value[l] / slope[l];
-    for (int l = 0; l < count; ++l) {
-      if (done[l]) continue;
-      const bool below = (value[l] < 0) == low_negative[l];
-      low[l] = below ? x[l] : low[l];
-      high[l] = below ? high[l] : x[l];
-      if (value[l] == 0.0) {
-        next[l] = x[l];
-        done[l] = true;
-      } else if (!(next[l] > low[l] && next[l] < high[l])) {
-        next[l] = 0.5 * (low[l] + high[l]);
-        done[l] = next[l] == low[l] || next[l] == high[l];
-      } else {
-        // Quadratic convergence: what is left is of the order of the step squared.
-        done[l] = std::abs(next[l] - x[l]) <= 1e-9 * std::abs(next[l]);
-      }
-      x[l] = next[l];
-      left -= done[l] ? 1 : 0;
-    }
-  }
-  for (int l = 0; l < count; ++l) {
-    const double root = brackets[l].reversed ? 1.0 / x[l] : x[l];
-    roots[l] = brackets[l].mirrored ? -root : root;
-  }
-}
+struct BernsteinPiece {
+  double low, width;
+  double b[N + 1];
 
-// 1 / C(N, j).
-template <int N>
-struct InverseBinomials {
-  double value[N + 1] = {};
-  constexpr InverseBinomials() {
-    double binomial = 1.0;
-    for (int j = 0; j <= N; ++j) {
-      value[j] = 1.0 / binomial;
-      binomial = binomial * (N - j) / (j + 1);
-    }
+  BernsteinPiece() = default;
+  // Of c on (0, 1), where c(1) = `at_one`.
+  BernsteinPiece(const double* c, double at_one) : low(0.0), width(1.0) {
+    constexpr InverseBinomials<N> kInverse;
+    BernsteinOnUnitInterval(Known<N>(), c, kInverse.value, b);
+    b[N] = at_one;
+  }
+
+  double Middle() const { return low + 0.5 * width; }
+
+  // The left half replaces the piece.
+  void Halve(BernsteinPiece* right) {
+    HalveBernstein(Known<N>(), b, right->b);
+    width *= 0.5;
+    right->low = low + width;
+    right->width = width;
   }
 };
-
-// Bernstein coefficients on (0, 1) of the polynomial c; the last one is p(1) = `at_one`.
-template <int N>
-inline void BernsteinOnUnitInterval(const double* c, double at_one, double* b) {
-  // b_k = sum_j C(k, j) / C(N, j) c_j, by running sums.
-  constexpr InverseBinomials<N> kInverse;
-  for (int j = 0; j <= N; ++j) b[j] = c[j] * kInverse.value[j];
-  for (int j = 1; j <= N; ++j) {
-    for (int k = N; k >= j; --k) b[k] += b[k - 1];
-  }
-  b[N] = at_one;
-}
 
 // Zeros do not count.
 template <int N>
@@ -156,73 +89,84 @@ inline bool IsRounding(const double* c, double x) {
   return std::abs(EvaluatePolynomial<N>(c, x)) <= 4e-15 * PolynomialMagnitude<N>(c, x);
 }
 
+// Fills `bracket`, which has the piece's kind, for a piece of one sign variation.
+template <int N>
+inline void BracketOfOneRoot(const BernsteinPiece<N>& piece, Bracket* bracket) {
+  const double* b = piece.b;
+  // The sign just inside the lower end: a zero at the end itself is a root already counted.
+  int first = 0;
+  while (b[first] == 0.0) ++first;
+  int change = first + 1;
+  while ((b[change] < 0) == (b[first] < 0)) ++change;
+  const double fraction = AwayFromEnds(PolygonCrossing(N, b, change - 1));
+  bracket->low = piece.low;
+  bracket->high = piece.low + piece.width;
+  bracket->guess = piece.low + piece.width * fraction;
+  bracket->low_negative = b[first] < 0;
+}
+
+// Fills `bracket`, which has the piece's kind, for a root that is known.
+inline void BracketOfKnownRoot(double root, Bracket* bracket) {
+  bracket->low = bracket->high = bracket->guess = root;
+  bracket->low_negative = false;
+}
+
+// True if the roots of a piece of several sign variations count as one.
+template <int N>
+inline bool IsSmallest(const double* c, const BernsteinPiece<N>& piece) {
+  // Both are shares of (0, 1). Roots closer than the first count as one. Below the second they do if
+  // rounding may have made them complex.
+  constexpr double kOneRoot = 1e-9;
+  constexpr double kMaybeComplex = 1e-7;
+  return piece.width < kOneRoot ||
+         (piece.width < kMaybeComplex && IsRounding<N>(c, piece.Middle()));
+}
+
 // Brackets of the roots in (0, 1) of p, p(0) != 0, and 1 if `with_one` and p(1) is zero exactly.
 // `bracket` has the piece's kind; at most `capacity` are written. Returns their number. `exact`
 // becomes false if some of them may stand for more than one root, or for none.
 template <int N>
 int BracketsInUnitInterval(const double* c, double at_one, bool with_one, Bracket bracket,
                            int capacity, Bracket* brackets, bool* exact) {
-  const auto known = [&](double root) {
+  int count = 0;
+  const auto add_known = [&](double root) {
     *exact = false;
-    bracket.low = bracket.high = bracket.guess = root;
-    bracket.low_negative = false;
-    return bracket;
-  };
-  struct Piece {
-    double low, width;
-    double b[N + 1];
+    BracketOfKnownRoot(root, &bracket);
+    brackets[count++] = bracket;
   };
   // Each halving puts back at most two pieces of one more level.
   constexpr int kMaxLevel = 30;
-  Piece stack[kMaxLevel + 2];
-  int count = 0;
+  BernsteinPiece<N> stack[kMaxLevel + 2];
+  stack[0] = BernsteinPiece<N>(c, at_one);
   int top = 0;
-  stack[0].low = 0.0;
-  stack[0].width = 1.0;
-  BernsteinOnUnitInterval<N>(c, at_one, stack[0].b);
-  if (at_one == 0.0 && with_one && capacity > 0) brackets[count++] = known(1.0);
+  if (at_one == 0.0 && with_one && capacity > 0) add_known(1.0);
   while (top >= 0 && count < capacity) {
-    Piece& piece = stack[top];
-    double* b = piece.b;
-    const int variations = SignVariations<N>(b);
+    BernsteinPiece<N>& piece = stack[top];
+    const int variations = SignVariations<N>(piece.b);
     if (variations == 0) {
       --top;
     } else if (variations == 1) {
-      // The sign just inside the lower end: a zero at the end itself is a root already counted.
-      int first = 0;
-      while (b[first] == 0.0) ++first;
-      // Where the polygon of the coefficients crosses zero.
-      int change = first + 1;
-      while ((b[change] < 0) == (b[first] < 0)) ++change;
-      const double share = b[change - 1] / (b[change - 1] - b[change]);
-      const double fraction = AwayFromEnds((change - 1 + share) / N);
-      bracket.low = piece.low;
-      bracket.high = piece.low + piece.width;
-      bracket.guess = piece.low + piece.width * fraction;
-      bracket.low_negative = b[first] < 0;
+      BracketOfOneRoot<N>(piece, &bracket);
       brackets[count++] = bracket;
       --top;
-    } else if (piece.width < 1e-9 || top > kMaxLevel ||
-               (piece.width < 1e-7 && IsRounding<N>(c, piece.low + 0.5 * piece.width))) {
-      brackets[count++] = known(piece.low + 0.5 * piece.width);
+    } else if (top > kMaxLevel || IsSmallest<N>(c, piece)) {
+      add_known(piece.Middle());
       --top;
     } else {
-      // De Casteljau at the middle: the left half replaces the piece, the right half is pushed.
-      Piece& right = stack[top + 1];
-      for (int k = 0; k <= N; ++k) right.b[k] = b[k];
-      for (int k = 1; k <= N; ++k) {
-        b[k - 1] = right.b[0];
-        for (int i = 0; i <= N - k; ++i) right.b[i] = 0.5 * (right.b[i] + right.b[i + 1]);
-      }
-      b[N] = right.b[0];
-      piece.width *= 0.5;
-      right.low = piece.low + piece.width;
-      right.width = piece.width;
-      if (right.b[0] == 0.0) brackets[count++] = known(right.low);
-      ++top;
+      BernsteinPiece<N>& right = stack[++top];
+      piece.Halve(&right);
+      if (right.b[0] == 0.0) add_known(right.low);
     }
   }
   return count;
+}
+
+// The roots of c in `count` <= N brackets, to rounding.
+template <int N>
+inline void RootsInBrackets(const double* c, const Bracket* brackets, int count, double* roots) {
+  constexpr int kLanes = (N + 1) / 2 * 2;             // whole registers of two
+  constexpr NewtonLimits kLimits = {100, 1e-9, 0.0};  // the error left is the step squared
+  if (count > 0) BracketedNewton<N, kLanes>(c, Known<N>(), brackets, count).Find(kLimits, roots);
 }
 
 // The bracket (0, 1) of the only root there, of p with p(1) = `at_one`.
@@ -286,7 +230,7 @@ int IsolatedRoots(const double* c, int capacity, double* roots) {
     num_brackets += BracketsInUnitInterval<N>(far, end, false, bracket, capacity - num_brackets,
                                               brackets + num_brackets, &exact);
   }
-  BracketedNewton<N>(c, brackets, num_brackets, roots);
+  RootsInBrackets<N>(c, brackets, num_brackets, roots);
   return num_brackets;
 }
 

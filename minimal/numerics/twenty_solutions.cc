@@ -30,6 +30,63 @@ RIGEL_KERNEL_BODY void Exchange(int m, int k, double (*a)[kSize]) {
   }
 }
 
+// Exchanges row m and column m with those of the largest entry of row m - 1 from column m on.
+RIGEL_KERNEL_BODY void BringPivotTo(int m, double (*a)[kSize]) {
+  double* row = a[m - 1];
+  int pivot = m;
+  for (int k = m + 1; k < kSize; ++k) {
+    if (std::fabs(row[k]) > std::fabs(row[pivot])) pivot = k;
+  }
+  if (pivot != m) Exchange(m, pivot, a);
+  if (std::fabs(row[m]) < kLeastPivot) row[m] = kLeastPivot;
+}
+
+// Factors of the multiples of column m that make row m - 1 zero from column m + 1 on; zeros up to
+// m. False if all are zero.
+RIGEL_KERNEL_BODY bool EliminationFactors(int m, const double* row, double* factors) {
+  const double inv = 1.0 / row[m];
+  bool any = false;
+  for (int k = Down(m + 1); k < kSize; ++k) {
+    factors[k] = k > m ? row[k] * inv : 0.0;
+    any = any || factors[k] != 0.0;
+  }
+  return any;
+}
+
+// Subtracts the multiples of column m from the columns after it.
+RIGEL_KERNEL_BODY void SubtractColumn(int m, const double* factors, double (*a)[kSize]) {
+  // Many monomials times x are monomials: rows with one entry, seldom in this column.
+  for (int r = m; r < kSize + 2; ++r) {
+    const double entry = a[r][m];
+    if (entry == 0.0) continue;
+    for (int k = Down(m + 1); k < kSize; k += 4) {
+      for (int l = 0; l < 4; ++l) a[r][k + l] -= entry * factors[k + l];
+    }
+  }
+}
+
+// The inverse step on the rows: adds the same multiples of the rows after m to row m.
+RIGEL_KERNEL_BODY void AddToRow(int m, const double* factors, double (*a)[kSize]) {
+  double sum[kSize];
+  for (int k = 0; k < kSize; ++k) sum[k] = a[m][k];
+  for (int j = m + 1; j < kSize; ++j) {
+    const double factor = factors[j];
+    for (int k = 0; k < kSize; ++k) sum[k] += factor * a[j][k];
+  }
+  for (int k = 0; k < kSize; ++k) a[m][k] = sum[k];
+}
+
+RIGEL_KERNEL_BODY void ScaleSuperdiagonal(double (*a)[kSize]) {
+  double scale[kSize], inv_scale[kSize];
+  scale[0] = 1.0;
+  for (int k = 1; k < kSize; ++k) scale[k] = scale[k - 1] * a[k - 1][k];
+  for (int k = 0; k < kSize; ++k) inv_scale[k] = 1.0 / scale[k];
+  for (int r = 0; r < kSize + 2; ++r) {
+    const double row_scale = r < kSize ? scale[r] : 1.0;
+    for (int k = 0; k < kSize; ++k) a[r][k] *= row_scale * inv_scale[k];
+  }
+}
+
 // H = S^-1 A S, zero above the superdiagonal, by Gaussian elimination with pivoting, the
 // superdiagonal scaled to 1; rows kSize and kSize + 1 become the rows of y and z of S (Wilkinson,
 // "The Algebraic Eigenvalue Problem", ch. 6, transposed). What is above the superdiagonal is left
@@ -40,47 +97,13 @@ RIGEL_KERNEL_BODY void ReduceToHessenberg(double (*a)[kSize]) {
     a[kSize + 1][k] = k == 3 ? 1.0 : 0.0;
   }
   for (int m = 1; m < kSize; ++m) {
-    double* row = a[m - 1];
-    int pivot = m;
-    for (int k = m + 1; k < kSize; ++k) {
-      if (std::fabs(row[k]) > std::fabs(row[pivot])) pivot = k;
-    }
-    if (pivot != m) Exchange(m, pivot, a);
-    // A zero would split the matrix; a tiny number does not move its eigenvalues.
-    if (std::fabs(row[m]) < 1e-30) row[m] = 1e-30;
-    const double inv = 1.0 / row[m];
-    const int begin = Down(m + 1);
+    BringPivotTo(m, a);
     double factors[kSize];
-    bool any = false;
-    for (int k = begin; k < kSize; ++k) {
-      factors[k] = k > m ? row[k] * inv : 0.0;
-      any = any || factors[k] != 0.0;
-    }
-    if (!any) continue;
-    // Many monomials times x are monomials: rows with one entry, seldom in this column.
-    for (int r = m; r < kSize + 2; ++r) {
-      const double entry = a[r][m];
-      if (entry == 0.0) continue;
-      for (int k = begin; k < kSize; k += 4) {
-        for (int l = 0; l < 4; ++l) a[r][k + l] -= entry * factors[k + l];
-      }
-    }
-    double sum[kSize];
-    for (int k = 0; k < kSize; ++k) sum[k] = a[m][k];
-    for (int j = m + 1; j < kSize; ++j) {
-      const double factor = factors[j];
-      for (int k = 0; k < kSize; ++k) sum[k] += factor * a[j][k];
-    }
-    for (int k = 0; k < kSize; ++k) a[m][k] = sum[k];
+    if (!EliminationFactors(m, a[m - 1], factors)) continue;
+    SubtractColumn(m, factors, a);
+    AddToRow(m, factors, a);
   }
-  double scale[kSize], inv_scale[kSize];
-  scale[0] = 1.0;
-  for (int k = 1; k < kSize; ++k) scale[k] = scale[k - 1] * a[k - 1][k];
-  for (int k = 0; k < kSize; ++k) inv_scale[k] = 1.0 / scale[k];
-  for (int r = 0; r < kSize + 2; ++r) {
-    const double row_scale = r < kSize ? scale[r] : 1.0;
-    for (int k = 0; k < kSize; ++k) a[r][k] *= row_scale * inv_scale[k];
-  }
+  ScaleSuperdiagonal(a);
 }
 
 // det(x I - H), c[0..kSize] ascending: the polynomials p of x that an eigenvector consists of, the

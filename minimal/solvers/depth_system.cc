@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rigel/minimal/solvers/baseline.h"
+
 namespace rigel {
 namespace {
 
@@ -127,54 +129,61 @@ void DepthSystem<kModel>::SetPlanar(const PreparedMatches& matches, const int* s
 }
 
 template <RotationModel kModel>
+inline void DepthSystem<kModel>::Minor(int i, int j, double* m) const {
+  constexpr int D = kEntryDegree;
+  for (int k = 0; k <= 2 * D; ++k) m[k] = 0.0;
+  for (int a = 0; a <= D; ++a) {
+    for (int b = 0; b <= D; ++b) {
+      m[a + b] += f_[a][i][0] * f_[b][j][1] - f_[a][i][1] * f_[b][j][0];
+    }
+  }
+}
+
+template <RotationModel kModel>
+inline void DepthSystem<kModel>::AddCofactor(int r, int i, int j, double* coefficients) const {
+  double m[2 * kEntryDegree + 1];
+  Minor(i, j, m);
+  for (int a = 0; a <= LastColumnDegree(); ++a) {
+    const double entry = f_[a][r][2];
+    for (int b = 0; b <= 2 * kEntryDegree; ++b) coefficients[a + b] += entry * m[b];
+  }
+}
+
+template <RotationModel kModel>
+inline bool DepthSystem<kModel>::Moves() const {
+  for (int row = 0; row < (planar_ ? 2 : 3); ++row) {
+    // As a rule the first entry decides.
+    for (int k = 0; k <= kEntryDegree; ++k) {
+      if (std::abs(f_[k][row][0]) > kNegligible || std::abs(f_[k][row][1]) > kNegligible) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+template <RotationModel kModel>
 int DepthSystem<kModel>::Determinant(double* coefficients) const {
   constexpr int D = kEntryDegree;
   for (int k = 0; k <= kMaxDegree; ++k) coefficients[k] = 0.0;
   if (!has_parallax_) return 0;
 
-  // f(i,0) f(j,1) - f(i,1) f(j,0) of rows i and j.
-  const auto minor = [this](int i, int j, double* m) {
-    for (int k = 0; k <= 2 * D; ++k) m[k] = 0.0;
-    for (int a = 0; a <= D; ++a) {
-      for (int b = 0; b <= D; ++b) {
-        m[a + b] += f_[a][i][0] * f_[b][j][1] - f_[a][i][1] * f_[b][j][0];
-      }
-    }
-  };
-
-  int degree = 0;
-  double m[2 * D + 1];
+  int degree = planar_ ? D : 2 * D;
   if (central_) {
-    minor(0, planar_ ? 2 : 1, m);
-    degree = planar_ ? D : 2 * D;
+    double m[2 * D + 1];
+    Minor(0, planar_ ? 2 : 1, m);
     for (int k = 0; k <= degree; ++k) coefficients[k] = m[k];
   } else {
-    const int column_degree = deflated_ ? D - 1 : D;
-    const auto add = [&](int r, int i, int j) {
-      minor(i, j, m);
-      for (int a = 0; a <= column_degree; ++a) {
-        const double entry = f_[a][r][2];
-        for (int b = 0; b <= 2 * D; ++b) coefficients[a + b] += entry * m[b];
-      }
-    };
-    add(0, 1, 2);
-    add(1, 2, 0);
-    add(2, 0, 1);
-    degree = (planar_ ? D : 2 * D) + column_degree;
+    AddCofactor(0, 1, 2, coefficients);
+    AddCofactor(1, 2, 0, coefficients);
+    AddCofactor(2, 0, 1, coefficients);
+    degree += LastColumnDegree();
   }
 
   // Matches that do not move (or NaN) make every coefficient vanish: what is left is rounding.
-  bool moves = false;
-  for (int row = 0; row < (planar_ ? 2 : 3) && !moves; ++row) {
-    // As a rule the first entry decides.
-    for (int k = 0; k <= D && !moves; ++k) {
-      moves = std::abs(f_[k][row][0]) > kNegligible || std::abs(f_[k][row][1]) > kNegligible;
-    }
-  }
   double sum = 0.0;
   for (int k = 0; k <= degree; ++k) sum += std::abs(coefficients[k]);
-  if (!moves || !(sum > 0.0) || !std::isfinite(sum)) return 0;
-  return degree;
+  return Moves() && sum > 0.0 && std::isfinite(sum) ? degree : 0;
 }
 
 template <RotationModel kModel>
@@ -244,23 +253,22 @@ void DepthSystem<kModel>::AddSolution(const PreparedMatches& matches, double z,
 
   const double* x1 = reference_->x1;
   const double* x2 = reference_->x2;
-  const double* s1 = reference_->s1;
-  const double* s2 = reference_->s2;
   // The baseline of the reference's cameras, w times too long: w b = d2 x2 - d1 R x1. Components,
   // as a vector written by them cannot be read back whole without waiting.
   const double bx = v[1] * x2[0] - v[0] * (c * x1[0] + s * x1[2]);
   const double by = v[1] * x2[1] - v[0] * x1[1];
   const double bz = v[1] * x2[2] - v[0] * (c * x1[2] - s * x1[0]);
   const double depth = std::abs(v[0]) + std::abs(v[1]);
-  const bool has_scale = std::abs(v[2]) > kNegligible * depth && (!deflated_ || std::abs(z) > 1e-8);
+  const bool has_scale =
+      std::abs(v[2]) > kNegligible * depth && (!deflated_ || std::abs(z) > kNoTurn);
 
-  double tx, ty, tz;
+  Eigen::Vector3d t;
   if (has_scale && deflated_) {
     // t = b + (I - R) s, both divided by z first: finite for any z.
+    const double* s1 = reference_->s1;
     const double scale = z / v[2];
-    tx = scale * bx + z * (versine_over_z * s1[0] - s_over_z * s1[2]);
-    ty = scale * by;
-    tz = scale * bz + z * (s_over_z * s1[0] + versine_over_z * s1[2]);
+    t = {scale * bx + z * (versine_over_z * s1[0] - s_over_z * s1[2]), scale * by,
+         scale * bz + z * (s_over_z * s1[0] + versine_over_z * s1[2])};
   } else {
     double scale;
     if (has_scale) {
@@ -271,13 +279,11 @@ void DepthSystem<kModel>::AddSolution(const PreparedMatches& matches, double z,
       // The sign that puts the reference in front of its cameras.
       scale = (v[0] + v[1] >= 0 ? 1.0 : -1.0) / norm;
     }
-    tx = scale * bx + s2[0] - (c * s1[0] + s * s1[2]);
-    ty = scale * by + s2[1] - s1[1];
-    tz = scale * bz + s2[2] - (c * s1[2] - s * s1[0]);
+    t = TranslationOfBaseline(*reference_, c, s, scale * bx, scale * by, scale * bz);
   }
   Solution& solution = solutions->Append();
   solution.R = matches.alignment().Rotation(c, s);
-  solution.t = matches.alignment().ToFrame2({tx, ty, tz});
+  solution.t = matches.alignment().ToFrame2(t);
   solution.has_scale = has_scale;
 }
 

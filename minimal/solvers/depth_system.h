@@ -55,6 +55,13 @@ class DepthSystem {
  private:
   void SetReference(const PreparedMatches& matches, const int* sample, int sample_size);
   void SetRow(const PreparedMatch& match, int row);
+  int LastColumnDegree() const { return deflated_ ? kEntryDegree - 1 : kEntryDegree; }
+  // Coefficients of f(i,0) f(j,1) - f(i,1) f(j,0) of rows i and j.
+  void Minor(int i, int j, double* m) const;
+  // Adds the last column's entry of row r times the minor of rows i and j.
+  void AddCofactor(int r, int i, int j, double* coefficients) const;
+  // False if the rays of all matches coincide up to rounding.
+  bool Moves() const;
   void NullVector(double z, double v[3]) const;
 
   // Entry (row, column) is sum_k f_[k][row][column] z^k; column 2 is divided by z if deflated_.

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "rigel/minimal/numerics/laplace.h"
-#include "rigel/minimal/solvers/unit_baseline.h"
+#include "rigel/minimal/solvers/baseline.h"
 
 namespace rigel {
 namespace {
@@ -158,7 +158,7 @@ void DirectSample::AddSolution(double z, Solutions* solutions) const {
   const double c = (1.0 - z2) / norm2;
   const double s = 2.0 * z / norm2;
   const bool has_scale = !central_ && w * w > kNegligible * kNegligible * direction2 &&
-                         (!deflated_ || std::abs(z) > 1e-8);
+                         (!deflated_ || std::abs(z) > kNoTurn);
   Eigen::Vector3d t;
   if (has_scale) {
     t = direction * ((deflated_ ? z : 1.0) / w);

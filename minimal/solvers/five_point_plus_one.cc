@@ -7,6 +7,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "rigel/core/cheirality.h"
+#include "rigel/core/depth_terms.h"
 #include "rigel/core/pose.h"
 #include "rigel/minimal/numerics/polynomial.h"
 
@@ -16,9 +18,6 @@ namespace {
 // Below this, relative to the rest, the sixth match says nothing about the scale: the rotation
 // that it is multiplied by is known to a few digits less than a double has.
 constexpr double kBlind = 1e-7;
-
-// Sine of the parallax below which a point tells no depth, and has no vote (cheirality.h).
-constexpr double kNoParallax = 1e-9;
 
 // Polynomials in (x, y, z) by their coefficients:
 //   linear     x, y, z, 1
@@ -77,41 +76,48 @@ inline void AddProduct(const Quadratic& q, const Linear& a, Cubic* c) {
   out[19] += q[9] * w;
 }
 
-// The orthonormal basis of the null space of the five epipolar constraints, by Householder
-// reflections; basis[n][3 i + j] is entry (i, j) of its n-th matrix.
+// A Householder reflection I - beta v v' of R^9; v is zero before entry k.
+struct Reflection {
+  int k;
+  double beta;  // 2 / |v|^2; a zero vector gives an infinity, and no solution
+  const double* v;
+
+  // The one that leaves `x` no entry after k. x becomes v.
+  static Reflection Of(int k, double* x) {
+    double norm2 = 0.0;
+    for (int i = k; i < 9; ++i) norm2 += x[i] * x[i];
+    const double norm = std::sqrt(norm2);
+    x[k] = x[k] >= 0 ? x[k] + norm : x[k] - norm;
+    return {k, 1.0 / (norm * std::abs(x[k])), x};
+  }
+
+  void Apply(double* x) const {
+    double dot = 0.0;
+    for (int i = k; i < 9; ++i) dot += v[i] * x[i];
+    dot *= beta;
+    for (int i = k; i < 9; ++i) x[i] -= dot * v[i];
+  }
+};
+
+// The orthonormal basis of the null space of the five epipolar constraints; basis[n][3 i + j] is
+// entry (i, j) of its n-th matrix.
 void NullSpace(const Eigen::Vector3d* x1, const Eigen::Vector3d* x2, double basis[4][9]) {
-  double v[5][9];
+  double rows[5][9];
   for (int k = 0; k < 5; ++k) {
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) v[k][3 * i + j] = x2[k][i] * x1[k][j];
+      for (int j = 0; j < 3; ++j) rows[k][3 * i + j] = x2[k][i] * x1[k][j];
     }
   }
-  double beta[5];
+  Reflection reflections[5];
   for (int k = 0; k < 5; ++k) {
-    double norm2 = 0.0;
-    for (int i = k; i < 9; ++i) norm2 += v[k][i] * v[k][i];
-    const double norm = std::sqrt(norm2);
-    const double pivot = v[k][k] >= 0 ? v[k][k] + norm : v[k][k] - norm;
-    v[k][k] = pivot;
-    // 2 / |v|^2; a zero vector gives an infinity, and no solution.
-    beta[k] = 1.0 / (norm * std::abs(pivot));
-    for (int l = k + 1; l < 5; ++l) {
-      double dot = 0.0;
-      for (int i = k; i < 9; ++i) dot += v[k][i] * v[l][i];
-      dot *= beta[k];
-      for (int i = k; i < 9; ++i) v[l][i] -= dot * v[k][i];
-    }
+    reflections[k] = Reflection::Of(k, rows[k]);
+    for (int l = k + 1; l < 5; ++l) reflections[k].Apply(rows[l]);
   }
   for (int n = 0; n < 4; ++n) {
     double* e = basis[n];
     for (int i = 0; i < 9; ++i) e[i] = 0.0;
     e[5 + n] = 1.0;
-    for (int k = 4; k >= 0; --k) {
-      double dot = 0.0;
-      for (int i = k; i < 9; ++i) dot += v[k][i] * e[i];
-      dot *= beta[k];
-      for (int i = k; i < 9; ++i) e[i] -= dot * v[k][i];
-    }
+    for (int k = 4; k >= 0; --k) reflections[k].Apply(e);
   }
 }
 
@@ -155,6 +161,28 @@ void EssentialConstraints(const double basis[4][9], Cubic rows[10]) {
   }
 }
 
+// Brings the largest entry of column p to row p, makes it 1 and clears the column below it. False
+// if there is none.
+bool ClearColumn(int p, double** row) {
+  // Of entries near 1, as the basis is orthonormal: less is rounding, and the constraints
+  // dependent.
+  constexpr double kMinPivot = 1e-10;
+  int best = p;
+  for (int r = p + 1; r < 10; ++r) {
+    if (std::abs(row[r][p]) > std::abs(row[best][p])) best = r;
+  }
+  std::swap(row[p], row[best]);
+  const double pivot = row[p][p];
+  if (!(std::abs(pivot) > kMinPivot)) return false;
+  const double inverse = 1.0 / pivot;
+  for (int k = p + 1; k < 20; ++k) row[p][k] *= inverse;
+  for (int r = p + 1; r < 10; ++r) {
+    const double factor = row[r][p];
+    for (int k = p + 1; k < 20; ++k) row[r][k] -= factor * row[p][k];
+  }
+  return true;
+}
+
 // Gauss elimination of the first ten columns with row pivoting, back substitution as far as rows
 // 4 to 9 need it: in those, columns 10 to 19 become the remainders of x2z, x2, y2z, y2, xyz, xy.
 // False if the constraints are dependent.
@@ -162,19 +190,7 @@ bool Eliminate(Cubic rows[10]) {
   double* row[10];
   for (int r = 0; r < 10; ++r) row[r] = rows[r];
   for (int p = 0; p < 10; ++p) {
-    int best = p;
-    for (int r = p + 1; r < 10; ++r) {
-      if (std::abs(row[r][p]) > std::abs(row[best][p])) best = r;
-    }
-    std::swap(row[p], row[best]);
-    const double pivot = row[p][p];
-    if (!(std::abs(pivot) > 1e-10)) return false;
-    const double inverse = 1.0 / pivot;
-    for (int k = p + 1; k < 20; ++k) row[p][k] *= inverse;
-    for (int r = p + 1; r < 10; ++r) {
-      const double factor = row[r][p];
-      for (int k = p + 1; k < 20; ++k) row[r][k] -= factor * row[p][k];
-    }
+    if (!ClearColumn(p, row)) return false;
   }
   for (int p = 9; p > 4; --p) {
     for (int r = 4; r < p; ++r) {
@@ -184,12 +200,8 @@ bool Eliminate(Cubic rows[10]) {
   }
   // Hand the permuted rows back in order.
   double ordered[6][10];
-  for (int r = 0; r < 6; ++r) {
-    for (int k = 0; k < 10; ++k) ordered[r][k] = row[4 + r][10 + k];
-  }
-  for (int r = 0; r < 6; ++r) {
-    for (int k = 0; k < 10; ++k) rows[4 + r][10 + k] = ordered[r][k];
-  }
+  for (int r = 0; r < 6; ++r) std::copy(row[4 + r] + 10, row[4 + r] + 20, ordered[r]);
+  for (int r = 0; r < 6; ++r) std::copy(ordered[r], ordered[r] + 10, rows[4 + r] + 10);
   return true;
 }
 
@@ -258,6 +270,15 @@ Eigen::Matrix3d Orthonormalized(const Eigen::Matrix3d& M) {
   return R;
 }
 
+// Counts a match whose rays are g and f in f2 for the unit baseline b or for -b, whichever has it
+// in front of both cameras.
+void Vote(const Eigen::Vector3d& g, const Eigen::Vector3d& f, const Eigen::Vector3d& b, int* votes,
+          int* votes_against) {
+  const DepthTerms depth = DepthTermsOf(g[0], g[1], g[2], f[0], f[1], f[2], b[0], b[1], b[2]);
+  *votes += depth.n1 > kNoParallax && depth.n2 > kNoParallax;
+  *votes_against += depth.n1 < -kNoParallax && depth.n2 < -kNoParallax;
+}
+
 // R and the unit vector b of E = [b]x R up to sign that have most of the five points in front of
 // both cameras. False if those are fewer than three: no motion, or five that do not agree.
 bool Decompose(const Eigen::Matrix3d& E, const Eigen::Vector3d* x1, const Eigen::Vector3d* x2,
@@ -281,19 +302,8 @@ bool Decompose(const Eigen::Matrix3d& E, const Eigen::Vector3d* x1, const Eigen:
   for (int k = 0; k < 5; ++k) {
     const Eigen::Vector3d g = *R * x1[k];
     const Eigen::Vector3d& f = x2[k];
-    const Eigen::Vector3d n = g.cross(f);
-    const Eigen::Vector3d fb = f.cross(*b);
-    const Eigen::Vector3d gb = g.cross(*b);
-    // d1 and d2 times |n|^2 (cheirality.cc), and the same with 2 (b.g) b - g for g.
-    const double d1 = fb.dot(n);
-    const double d2 = gb.dot(n);
-    const double twice = 2.0 * b->dot(g);
-    const double e1 = -twice * fb.squaredNorm() - d1;
-    const double e2 = twice * gb.dot(fb) + d2;
-    votes[0] += d1 > kNoParallax && d2 > kNoParallax;
-    votes[1] += d1 < -kNoParallax && d2 < -kNoParallax;
-    votes[2] += e1 > kNoParallax && e2 > kNoParallax;
-    votes[3] += e1 < -kNoParallax && e2 < -kNoParallax;
+    Vote(g, f, *b, &votes[0], &votes[1]);
+    Vote(2.0 * b->dot(g) * *b - g, f, *b, &votes[2], &votes[3]);
   }
   int choice = 0;
   for (int k = 1; k < 4; ++k) {
@@ -306,49 +316,64 @@ bool Decompose(const Eigen::Matrix3d& E, const Eigen::Vector3d* x1, const Eigen:
   return true;
 }
 
+// The five constraints b . (R x1 x x2) = 0, linear in a left perturbation d of R and in b + T e:
+// M[k][0..4] . (d, e) = M[k][5]. Returns the largest |M[k][5]|.
+double Linearize(const Eigen::Vector3d* x1, const Eigen::Vector3d* x2, const Eigen::Matrix3d& R,
+                 const Eigen::Vector3d& b, const Eigen::Matrix<double, 3, 2>& T, double (*M)[6]) {
+  double largest = 0.0;
+  for (int k = 0; k < 5; ++k) {
+    const Eigen::Vector3d g = R * x1[k];
+    const Eigen::Vector3d n = g.cross(x2[k]);
+    const Eigen::Vector3d turn = g.cross(x2[k].cross(b));
+    for (int i = 0; i < 3; ++i) M[k][i] = turn[i];
+    M[k][3] = n.dot(T.col(0));
+    M[k][4] = n.dot(T.col(1));
+    M[k][5] = -n.dot(b);
+    largest = std::max(largest, std::abs(M[k][5]));
+  }
+  return largest;
+}
+
+// Solves M[k][0..4] . d = M[k][5] by elimination with partial pivoting, in place; returns sum |d|,
+// which is not finite if the rows are dependent.
+double SolveFiveByFive(double (*M)[6], double* d) {
+  for (int p = 0; p < 5; ++p) {
+    int best = p;
+    for (int r = p + 1; r < 5; ++r) {
+      if (std::abs(M[r][p]) > std::abs(M[best][p])) best = r;
+    }
+    for (int k = p; k < 6; ++k) std::swap(M[p][k], M[best][k]);
+    const double inverse = 1.0 / M[p][p];
+    for (int r = p + 1; r < 5; ++r) {
+      const double factor = M[r][p] * inverse;
+      for (int k = p + 1; k < 6; ++k) M[r][k] -= factor * M[p][k];
+    }
+  }
+  double size = 0.0;
+  for (int p = 4; p >= 0; --p) {
+    double sum = M[p][5];
+    for (int k = p + 1; k < 5; ++k) sum -= M[p][k] * d[k];
+    d[p] = sum / M[p][p];
+    size += std::abs(d[p]);
+  }
+  return size;
+}
+
 // Newton steps on the five constraints b . (R x1 x x2) = 0 themselves. Rounding in the polynomial
 // leaves an error above 1e-7 rad in one motion of a hundred.
 void Refine(const Eigen::Vector3d* x1, const Eigen::Vector3d* x2, Eigen::Matrix3d* R,
             Eigen::Vector3d* b) {
-  for (int step = 0; step < 3; ++step) {
-    // Left perturbation d of R, and b + T (e1, e2) with T the tangent plane at b.
+  // Each squares the error: from 1e-3, which no root of the polynomial has, to rounding.
+  constexpr int kMaxSteps = 3;
+  constexpr double kSolved = 1e-13;  // of a constraint, whose vectors have unit length: rounding
+  // Radians. A step that is not small comes of a double root: the start is as good.
+  constexpr double kMaxStep = 0.1;
+  for (int step = 0; step < kMaxSteps; ++step) {
     const Eigen::Matrix<double, 3, 2> T = TangentBasis(*b);
     double M[5][6];
-    double largest = 0.0;
-    for (int k = 0; k < 5; ++k) {
-      const Eigen::Vector3d g = *R * x1[k];
-      const Eigen::Vector3d n = g.cross(x2[k]);
-      const Eigen::Vector3d turn = g.cross(x2[k].cross(*b));
-      for (int i = 0; i < 3; ++i) M[k][i] = turn[i];
-      M[k][3] = n.dot(T.col(0));
-      M[k][4] = n.dot(T.col(1));
-      M[k][5] = -n.dot(*b);
-      largest = std::max(largest, std::abs(M[k][5]));
-    }
-    if (!(largest > 1e-13)) return;
-
-    for (int p = 0; p < 5; ++p) {
-      int best = p;
-      for (int r = p + 1; r < 5; ++r) {
-        if (std::abs(M[r][p]) > std::abs(M[best][p])) best = r;
-      }
-      for (int k = p; k < 6; ++k) std::swap(M[p][k], M[best][k]);
-      const double inverse = 1.0 / M[p][p];
-      for (int r = p + 1; r < 5; ++r) {
-        const double factor = M[r][p] * inverse;
-        for (int k = p + 1; k < 6; ++k) M[r][k] -= factor * M[p][k];
-      }
-    }
+    if (!(Linearize(x1, x2, *R, *b, T, M) > kSolved)) return;
     double d[5];
-    double size = 0.0;
-    for (int p = 4; p >= 0; --p) {
-      double sum = M[p][5];
-      for (int k = p + 1; k < 5; ++k) sum -= M[p][k] * d[k];
-      d[p] = sum / M[p][p];
-      size += std::abs(d[p]);
-    }
-    // A step that is not small comes of a double root: the start is as good.
-    if (!(size < 0.1)) return;
+    if (!(SolveFiveByFive(M, d) < kMaxStep)) return;
     for (int k = 0; k < 3; ++k) {
       R->col(k) += Eigen::Vector3d(d[0], d[1], d[2]).cross(Eigen::Vector3d(R->col(k)));
     }

@@ -29,6 +29,10 @@ class GroupedMatches;
 // solution.
 inline constexpr double kNoParallax2 = 1e-18;
 
+// Below this tan(a/2) or angle a, radians, a root of a deflated sample (depth_system.h) is the pure
+// translation, whose length is not determined: half the digits of a double, as the root is double.
+inline constexpr double kNoTurn = 1e-8;
+
 // The coefficients of n and k.
 struct ConstraintRow {
   double X0, Xc, Xs, Yc, Ys, Z0;

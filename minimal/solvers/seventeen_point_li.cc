@@ -92,37 +92,63 @@ class TallMatrix {
   double columns_[kCols][kRows];
 };
 
-// The right singular vector of the smallest singular value of a 9 x 9 triangle T (rows from `top`,
-// columns from 9), whose columns are in the given order: inverse iteration.
-bool SmallestSingularVector(const TallMatrix<18>& a, int top, const int* order,
-                            Eigen::Matrix3d* E) {
-  const int rows = std::min(9, a.rows() - top);
-  const auto T = [&](int r, int c) { return a.at(top + r, 9 + c); };
-  double v[9];
-  // The null vector if the last pivot is zero (always, if there are eight rows).
-  v[8] = 1.0;
-  for (int r = 7; r >= 0; --r) {
-    double sum = 0.0;
-    for (int c = r + 1; c < 9; ++c) sum += T(r, c) * v[c];
-    v[r] = -sum / T(r, r);
+// The 9 x 9 triangle T of the columns from 9 on, its rows from `top` on.
+class Triangle {
+ public:
+  Triangle(const TallMatrix<18>& a, int top) : a_(a), top_(top) {}
+
+  double operator()(int r, int c) const { return a_.at(top_ + r, 9 + c); }
+  int rows() const { return std::min(9, a_.rows() - top_); }
+
+  // v with v[8] = 1 for which all rows but the last vanish.
+  void NullVector(double* v) const {
+    v[8] = 1.0;
+    for (int r = 7; r >= 0; --r) {
+      double sum = 0.0;
+      for (int c = r + 1; c < 9; ++c) sum += (*this)(r, c) * v[c];
+      v[r] = -sum / (*this)(r, r);
+    }
   }
-  const double last = rows == 9 ? T(8, 8) : 0.0;
-  if (std::abs(last) > 1e-13 * std::abs(T(0, 0))) {
-    for (int iteration = 0; iteration < 4; ++iteration) {
-      double norm2 = 0.0;
-      for (double x : v) norm2 += x * x;
-      const double inv = 1.0 / std::sqrt(norm2);
-      for (double& x : v) x *= inv;
-      for (int r = 0; r < 9; ++r) {
-        double sum = v[r];
-        for (int k = 0; k < r; ++k) sum -= T(k, r) * v[k];
-        v[r] = sum / T(r, r);
-      }
-      for (int r = 8; r >= 0; --r) {
-        double sum = v[r];
-        for (int c = r + 1; c < 9; ++c) sum -= T(r, c) * v[c];
-        v[r] = sum / T(r, r);
-      }
+
+  // v <- (T'T)^-1 v.
+  void SolveNormalEquations(double* v) const {
+    for (int r = 0; r < 9; ++r) {
+      double sum = v[r];
+      for (int k = 0; k < r; ++k) sum -= (*this)(k, r) * v[k];
+      v[r] = sum / (*this)(r, r);
+    }
+    for (int r = 8; r >= 0; --r) {
+      double sum = v[r];
+      for (int c = r + 1; c < 9; ++c) sum -= (*this)(r, c) * v[c];
+      v[r] = sum / (*this)(r, r);
+    }
+  }
+
+ private:
+  const TallMatrix<18>& a_;
+  int top_;
+};
+
+void Normalize(double (&v)[9]) {
+  double norm2 = 0.0;
+  for (double x : v) norm2 += x * x;
+  const double inv = 1.0 / std::sqrt(norm2);
+  for (double& x : v) x *= inv;
+}
+
+// The right singular vector of the smallest singular value of T, whose columns are in the given
+// order: inverse iteration. Its entries are those of E, row by row.
+bool SmallestSingularVector(const Triangle& T, const int* order, Eigen::Matrix3d* E) {
+  // Relative to the first pivot: the last one is zero but for rounding, and the null vector exact.
+  constexpr double kZeroPivot = 1e-13;
+  // Each divides the error by the square of the ratio of the two least singular values.
+  constexpr int kIterations = 4;
+  double v[9];
+  T.NullVector(v);
+  if (T.rows() == 9 && std::abs(T(8, 8)) > kZeroPivot * std::abs(T(0, 0))) {
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
+      Normalize(v);
+      T.SolveNormalEquations(v);
     }
   }
   for (int c = 0; c < 9; ++c) {
@@ -171,8 +197,7 @@ double SolveTranslation(const PreparedMatches& matches, const int* sample, int s
     int votes = 0;
     solution->t = arm + b;
     for (int m = 0; m < sample_size; ++m) {
-      const Cheirality c = TestCheirality(*solution, matches.rays(sample[m]));
-      votes += (c == Cheirality::kInFront) - (c == Cheirality::kBehind);
+      votes += CheiralityVote(*solution, matches.rays(sample[m]));
     }
     if (votes < 0) solution->t = arm - b;
   }
@@ -219,7 +244,7 @@ int Solve17ptLi(const PreparedMatches& matches, const int* sample, int sample_si
   const int rank_R = central ? 0 : a.Reduce(0, 0, 9, kNegligible, order);
   if (a.Reduce(rank_R, 9, 18, kNegligible, order) < 8) return 0;
   Eigen::Matrix3d E;
-  if (!SmallestSingularVector(a, rank_R, order, &E)) return 0;
+  if (!SmallestSingularVector(Triangle(a, rank_R), order, &E)) return 0;
 
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(E, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d U = svd.matrixU();

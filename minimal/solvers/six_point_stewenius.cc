@@ -53,6 +53,59 @@ void AddBilinear(const Eigen::Vector3d& b, const Eigen::Vector3d& a, double* c) 
   c[9] += kSquare * (zz - xx - yy);
 }
 
+// The rows of the depth systems whose reference is match a, for the matches after it: quadrics in r
+// times the depths of the reference and 1.
+void DepthRows(const Ray* ray1, const Ray* ray2, int a, double (*rows)[3][kQuadric]) {
+  for (int k = a + 1; k < 6; ++k) {
+    const Eigen::Vector3d& x = ray1[k].x;
+    const Eigen::Vector3d& y = ray2[k].x;
+    for (double* row : {rows[k][0], rows[k][1], rows[k][2]}) std::fill(row, row + kQuadric, 0.0);
+    AddBilinear(-y, ray1[a].x.cross(x), rows[k][0]);
+    AddBilinear(y.cross(ray2[a].x), x, rows[k][1]);
+    AddBilinear(y, (ray1[k].s - ray1[a].s).cross(x), rows[k][2]);
+    AddBilinear((ray2[k].s - ray2[a].s).cross(y), x, rows[k][2]);
+  }
+}
+
+// The 2 x 2 minors of the depths' columns. Those of three matches with the same centres vanish.
+void AddQuartics(const SixPointSystem& system, const double (*rows)[3][kQuadric], int a,
+                 double (*minors)[6][kQuartic], Equations* equations) {
+  for (int b = a + 1; b < 6; ++b) {
+    for (int c = b + 1; c < 6; ++c) {
+      double* minor = minors[b][c];
+      std::fill(minor, minor + kQuartic, 0.0);
+      AddProduct<2, 2>(rows[b][0], rows[c][1], 1.0, minor);
+      AddProduct<2, 2>(rows[b][1], rows[c][0], -1.0, minor);
+      if (system.SameCentres(a, b) && system.SameCentres(a, c)) {
+        std::copy(minor, minor + kQuartic, equations->quartics[equations->num_quartics++]);
+      }
+    }
+  }
+}
+
+// True if three of the four matches have the same centres: their sextic is a multiple of a quartic.
+bool HasQuartic(const SixPointSystem& system, int a, int b, int c, int d) {
+  const auto same = [&system](int i, int j) { return system.SameCentres(i, j); };
+  return (same(a, b) && (same(a, c) || same(a, d))) || (same(c, d) && (same(a, c) || same(b, c)));
+}
+
+// The 3 x 3 determinants, of four matches each.
+void AddSextics(const SixPointSystem& system, const double (*rows)[3][kQuadric], int a,
+                const double (*minors)[6][kQuartic], Equations* equations) {
+  for (int b = a + 1; b < 6; ++b) {
+    for (int c = b + 1; c < 6; ++c) {
+      for (int d = c + 1; d < 6; ++d) {
+        if (HasQuartic(system, a, b, c, d)) continue;
+        double* sextic = equations->sextics[equations->num_sextics++];
+        std::fill(sextic, sextic + kSextic, 0.0);
+        AddProduct<4, 2>(minors[b][c], rows[d][2], 1.0, sextic);
+        AddProduct<4, 2>(minors[b][d], rows[c][2], -1.0, sextic);
+        AddProduct<4, 2>(minors[c][d], rows[b][2], 1.0, sextic);
+      }
+    }
+  }
+}
+
 // C1 and C2 rotate the frames of view 1 and 2.
 void MakeEquations(const SixPointSystem& system, const Eigen::Matrix3d& C1,
                    const Eigen::Matrix3d& C2, Equations* equations) {
@@ -63,45 +116,13 @@ void MakeEquations(const SixPointSystem& system, const Eigen::Matrix3d& C1,
     ray1[k] = {C1 * rays.ray1.x, C1 * rays.ray1.s};
     ray2[k] = {C2 * rays.ray2.x, C2 * rays.ray2.s};
   }
-  const auto same = [&system](int i, int j) { return system.SameCentres(i, j); };
   // Each set of four matches once, with its first as the reference.
   for (int a = 0; a < 4; ++a) {
-    double rows[6][3][kQuadric] = {};
-    for (int k = a + 1; k < 6; ++k) {
-      const Eigen::Vector3d& x = ray1[k].x;
-      const Eigen::Vector3d& y = ray2[k].x;
-      AddBilinear(-y, ray1[a].x.cross(x), rows[k][0]);
-      AddBilinear(y.cross(ray2[a].x), x, rows[k][1]);
-      AddBilinear(y, (ray1[k].s - ray1[a].s).cross(x), rows[k][2]);
-      AddBilinear((ray2[k].s - ray2[a].s).cross(y), x, rows[k][2]);
-    }
-    double minors[6][6][kQuartic] = {};
-    for (int b = a + 1; b < 6; ++b) {
-      for (int c = b + 1; c < 6; ++c) {
-        AddProduct<2, 2>(rows[b][0], rows[c][1], 1.0, minors[b][c]);
-        AddProduct<2, 2>(rows[b][1], rows[c][0], -1.0, minors[b][c]);
-        if (same(a, b) && same(a, c)) {
-          std::copy(minors[b][c], minors[b][c] + kQuartic,
-                    equations->quartics[equations->num_quartics++]);
-        }
-      }
-    }
-    for (int b = a + 1; b < 6; ++b) {
-      for (int c = b + 1; c < 6; ++c) {
-        for (int d = c + 1; d < 6; ++d) {
-          // A multiple of a quartic, if three have the same centres.
-          if ((same(a, b) && (same(a, c) || same(a, d))) ||
-              (same(c, d) && (same(a, c) || same(b, c)))) {
-            continue;
-          }
-          double* sextic = equations->sextics[equations->num_sextics++];
-          std::fill(sextic, sextic + kSextic, 0.0);
-          AddProduct<4, 2>(minors[b][c], rows[d][2], 1.0, sextic);
-          AddProduct<4, 2>(minors[b][d], rows[c][2], -1.0, sextic);
-          AddProduct<4, 2>(minors[c][d], rows[b][2], 1.0, sextic);
-        }
-      }
-    }
+    double rows[6][3][kQuadric];
+    double minors[6][6][kQuartic];
+    DepthRows(ray1, ray2, a, rows);
+    AddQuartics(system, rows, a, minors, equations);
+    AddSextics(system, rows, a, minors, equations);
   }
 }
 

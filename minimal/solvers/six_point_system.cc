@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <Eigen/QR>
 
 #include "rigel/core/cheirality.h"
+#include "rigel/core/epipolar.h"
 #include "rigel/core/metrics.h"
 
 namespace rigel {
@@ -21,29 +21,6 @@ constexpr double kNoRotation = 1e-4;
 // Of the entries of R, and of t relative to 1 m and |t|: solutions that differ by less are one
 // root, found twice.
 constexpr double kDuplicate = 1e-9;
-
-// With partial pivoting; the loops of each column are of constant length.
-template <int kColumn>
-void EliminateColumn(double (*a)[8], double* inv) {
-  int best = kColumn;
-  for (int r = kColumn + 1; r < 6; ++r) {
-    best = std::abs(a[r][kColumn]) > std::abs(a[best][kColumn]) ? r : best;
-  }
-  double top[8];
-  for (int k = 0; k < 8; ++k) top[k] = a[best][k];
-  for (int k = 0; k < 8; ++k) a[best][k] = a[kColumn][k];
-  for (int k = 0; k < 8; ++k) a[kColumn][k] = top[k];
-  inv[kColumn] = 1.0 / top[kColumn];
-  for (int r = kColumn + 1; r < 6; ++r) {
-    const double factor = a[r][kColumn] * inv[kColumn];
-    for (int k = kColumn & ~1; k < 8; ++k) a[r][k] -= factor * top[k];
-  }
-}
-
-template <size_t... kColumns>
-void EliminateColumns(double (*a)[8], double* inv, std::index_sequence<kColumns...>) {
-  (EliminateColumn<kColumns>(a, inv), ...);
-}
 
 }  // namespace
 
@@ -93,17 +70,14 @@ void SixPointSystem::Add(const Eigen::Matrix3d& R, const Eigen::Vector4d& v) {
     solution.t = v.head<3>() / v[3];
     double largest = 0.0;
     for (const RayPair* pair : rays_) {
-      largest = std::max(largest, (R * pair->ray1.s + solution.t - pair->ray2.s).norm());
+      largest = std::max(largest, Baseline(solution, pair->ray1.s, pair->ray2.s).norm());
     }
     if (!(largest > kNoMotion * spread_)) return;
     if (pure_translation_ && RotationError(Eigen::Matrix3d::Identity(), R) < kNoRotation) return;
   } else {
     solution.t = v.head<3>().normalized();
     int votes = 0;
-    for (const RayPair* pair : rays_) {
-      const Cheirality c = TestCheirality(solution, *pair);
-      votes += (c == Cheirality::kInFront) - (c == Cheirality::kBehind);
-    }
+    for (const RayPair* pair : rays_) votes += CheiralityVote(solution, *pair);
     if (votes < 0) solution.t = -solution.t;
   }
   if (!solution.AllFinite()) return;
@@ -122,54 +96,18 @@ Eigen::Matrix3d SixPointBasis() {
   return B / 7.0;
 }
 
-Eigen::Vector4d NullVector(const double (*M)[4]) {
-  // Elimination with complete pivoting.
-  double T[6][4];
-  int column[4] = {0, 1, 2, 3};
-  for (int r = 0; r < 6; ++r) std::copy(M[r], M[r] + 4, T[r]);
-  for (int k = 0; k < 3; ++k) {
-    double largest = -1.0;
-    int entry = 5 * k;
-    for (int r = k; r < 6; ++r) {
-      for (int c = k; c < 4; ++c) {
-        const double size = std::abs(T[r][c]);
-        entry = size > largest ? 4 * r + c : entry;
-        largest = std::max(size, largest);
-      }
-    }
-    const int row = entry / 4;
-    const int best = entry % 4;
-    if (row != k) std::swap_ranges(T[k], T[k] + 4, T[row]);
-    if (best != k) {
-      for (int r = 0; r < 6; ++r) std::swap(T[r][k], T[r][best]);
-      std::swap(column[k], column[best]);
-    }
-    const double inv = T[k][k] != 0.0 ? 1.0 / T[k][k] : 0.0;
-    for (int r = k + 1; r < 6; ++r) {
-      const double factor = T[r][k] * inv;
-      for (int c = k + 1; c < 4; ++c) T[r][c] -= factor * T[k][c];
-    }
+void SixPointStep(const double (*M)[4], const double (*D)[3], const Eigen::Vector4d& v, int held,
+                  double* step) {
+  double J[6][8];
+  for (int m = 0; m < 6; ++m) {
+    for (int c = 0; c < 3; ++c) J[m][c] = D[m][c];
+    for (int c = 0; c < 3; ++c) J[m][3 + c] = M[m][c];
+    // The column of the held entry is overwritten by the last one.
+    if (held < 3) J[m][3 + held] = M[m][3];
+    J[m][6] = (M[m][0] * v[0] + M[m][1] * v[1]) + (M[m][2] * v[2] + M[m][3] * v[3]);
+    J[m][7] = 0.0;
   }
-  double v[4];
-  v[3] = 1.0;
-  for (int r = 2; r >= 0; --r) {
-    double sum = 0.0;
-    for (int c = r + 1; c < 4; ++c) sum += T[r][c] * v[c];
-    v[r] = T[r][r] != 0.0 ? -sum / T[r][r] : 0.0;
-  }
-  Eigen::Vector4d null;
-  for (int k = 0; k < 4; ++k) null[column[k]] = v[k];
-  return null;
-}
-
-void SolveSixBySix(double (*a)[8], double* x) {
-  double inv[6];
-  EliminateColumns(a, inv, std::make_index_sequence<6>());
-  for (int r = 5; r >= 0; --r) {
-    double value = a[r][6];
-    for (int c = r + 1; c < 6; ++c) value -= a[r][c] * x[c];
-    x[r] = value * inv[r];
-  }
+  SolveSixBySix(J, step);
 }
 
 }  // namespace rigel

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 
 #include "rigel/core/rays.h"
+#include "rigel/minimal/numerics/elimination.h"
 #include "rigel/minimal/solvers/prepared_matches.h"
 #include "rigel/minimal/solvers/solutions.h"
 
@@ -55,12 +56,11 @@ class SixPointSystem {
 // in their first coordinate.
 Eigen::Matrix3d SixPointBasis();
 
-// The null vector of a rank 3 approximation of M.
-Eigen::Vector4d NullVector(const double (*M)[4]);
-
-// Solves the six equations a[r][0..5] . x = a[r][6] by elimination with partial pivoting, in place;
-// not finite if they are dependent. a[r][7] is padding.
-void SolveSixBySix(double (*a)[8], double* x);
+// The Newton step of M(r) v = 0, of r and then of the entries of v but the held one, in whose place
+// the last entry stands. D (6 x 3) is the derivative of M v by r. Not finite where it is not
+// unique.
+void SixPointStep(const double (*M)[4], const double (*D)[3], const Eigen::Vector4d& v, int held,
+                  double* step);
 
 // Newton's method on M(r) v = 0 for six unknowns: r and v, whose largest entry is held. The problem
 // gives evaluate(v, M, D): M (6 x 4) and the derivative D (6 x 3) of M v by r; and update(dr). v is
@@ -71,7 +71,7 @@ bool PolishSixPoint(const Evaluate& evaluate, const Update& update, Eigen::Vecto
   // what does not has left the root that it was to find, or has none.
   constexpr int kMaxIterations = 10;
   constexpr double kMaxStep = 0.5;
-  constexpr double kConverged = 1e-7;  // what is left is of the order of the step squared
+  constexpr double kLastStep = 1e-7;  // of r and v; the error left is of the order of its square
   double M[6][4], D[6][3];
   evaluate(Eigen::Vector4d::Zero(), M, D);
   *v = NullVector(M);
@@ -80,24 +80,15 @@ bool PolishSixPoint(const Evaluate& evaluate, const Update& update, Eigen::Vecto
     for (int c = 1; c < 4; ++c) held = std::abs((*v)[c]) > std::abs((*v)[held]) ? c : held;
     *v *= 1.0 / (*v)[held];
     evaluate(*v, M, D);
-    // The column of the held entry is overwritten by the last one.
-    double J[6][8];
-    for (int m = 0; m < 6; ++m) {
-      for (int c = 0; c < 3; ++c) J[m][c] = D[m][c];
-      for (int c = 0; c < 3; ++c) J[m][3 + c] = M[m][c];
-      if (held < 3) J[m][3 + held] = M[m][3];
-      J[m][6] = (M[m][0] * (*v)[0] + M[m][1] * (*v)[1]) + (M[m][2] * (*v)[2] + M[m][3] * (*v)[3]);
-      J[m][7] = 0.0;
-    }
     double step[6];
-    SolveSixBySix(J, step);
+    SixPointStep(M, D, *v, held, step);
     const double turn2 = step[0] * step[0] + step[1] * step[1] + step[2] * step[2];
     const double size2 = turn2 + step[3] * step[3] + step[4] * step[4] + step[5] * step[5];
     // Written so that a NaN ends it.
     if (!(turn2 < kMaxStep * kMaxStep)) return false;
     update(Eigen::Vector3d(-step[0], -step[1], -step[2]));
     for (int c = 0; c < 3; ++c) (*v)[c == held ? 3 : c] -= step[3 + c];
-    if (size2 < kConverged * kConverged) return true;
+    if (size2 < kLastStep * kLastStep) return true;
   }
   return false;
 }

@@ -54,46 +54,56 @@ Row MakeRow(const RayPair& rays, const Eigen::Matrix3d& C) {
   return row;
 }
 
+// Subtracts `factor` times the row `from` from the row `to`.
+void Subtract(const Row& from, double factor, Row* to) {
+  for (int c = 0; c < 4; ++c) {
+    for (int k = 0; k < 4; ++k) to->entry[c][k] -= factor * from.entry[c][k];
+  }
+}
+
+// Exchanges row `begin` with that of the largest coefficient k in column 0 among it and those after
+// it; returns that coefficient.
+double BringPivotTo(int begin, int k, Row* rows) {
+  int best = begin;
+  for (int m = begin + 1; m < 6; ++m) {
+    if (std::abs(rows[m].entry[0][k]) > std::abs(rows[best].entry[0][k])) best = m;
+  }
+  if (best != begin) std::swap(rows[best], rows[begin]);
+  return rows[begin].entry[0][k];
+}
+
+// Combines the rows such that the linear parts of column 0 become x, y, z, 0, 0, 0. False if they
+// are of rank below 3.
+bool MakeLinearPartsUnit(Row* rows) {
+  constexpr double kMinPivot = 1e-6;  // of the largest one: below it the rank is doubtful
+  double largest = 0.0;
+  for (int rank = 0; rank < 3; ++rank) {
+    const double pivot = BringPivotTo(rank, 1 + rank, rows);
+    largest = std::max(largest, std::abs(pivot));
+    if (!(std::abs(pivot) > kMinPivot * largest)) return false;
+    const double inv = 1.0 / pivot;
+    for (auto& entry : rows[rank].entry) {
+      for (double& coefficient : entry) coefficient *= inv;
+    }
+    for (int m = 0; m < 6; ++m) {
+      if (m != rank) Subtract(rows[rank], rows[m].entry[0][1 + rank], &rows[m]);
+    }
+  }
+  return true;
+}
+
 // Combines the rows such that column 0 becomes x + a, y + b, z + c, d, 0, 0 (a to d constants),
 // which leaves little to multiply there. Columns 0 to 2 may change places. False if no column
 // allows it: its six linear parts are of rank below 3.
 bool CombineRows(Row* rows) {
-  constexpr double kMinPivot = 1e-6;  // of the largest one
-  const auto subtract = [rows](int from, double factor, int row) {
-    for (int c = 0; c < 4; ++c) {
-      for (int k = 0; k < 4; ++k) rows[row].entry[c][k] -= factor * rows[from].entry[c][k];
-    }
-  };
-  const auto pivot = [rows](int begin, int k) {
-    int best = begin;
-    for (int m = begin + 1; m < 6; ++m) {
-      if (std::abs(rows[m].entry[0][k]) > std::abs(rows[best].entry[0][k])) best = m;
-    }
-    if (best != begin) std::swap(rows[best], rows[begin]);
-    return rows[begin].entry[0][k];
-  };
   for (int column = 0; column < 3; ++column) {
     if (column > 0) {
       for (int m = 0; m < 6; ++m) std::swap(rows[m].entry[0], rows[m].entry[column]);
     }
-    double largest = 0.0;
-    int rank = 0;
-    for (; rank < 3; ++rank) {
-      const double top = pivot(rank, 1 + rank);
-      largest = std::max(largest, std::abs(top));
-      if (!(std::abs(top) > kMinPivot * largest)) break;
-      const double inv = 1.0 / top;
-      for (auto& entry : rows[rank].entry) {
-        for (double& coefficient : entry) coefficient *= inv;
-      }
-      for (int m = 0; m < 6; ++m) {
-        if (m != rank) subtract(rank, rows[m].entry[0][1 + rank], m);
-      }
-    }
-    if (rank < 3) continue;
-    const double constant = pivot(3, 0);
+    if (!MakeLinearPartsUnit(rows)) continue;
+    const double constant = BringPivotTo(3, 0, rows);
     if (constant == 0.0) return true;
-    for (int m = 4; m < 6; ++m) subtract(3, rows[m].entry[0][0] / constant, m);
+    for (int m = 4; m < 6; ++m) Subtract(rows[3], rows[m].entry[0][0] / constant, &rows[m]);
     return true;
   }
   return false;
@@ -112,10 +122,8 @@ struct TripleTable {
   }
 };
 
-// The fifteen 4 x 4 minors, by Laplace expansion. False if one is zero or not finite.
-bool AddMinors(const Row* rows, MacaulayMatrix<4, 15>* macaulay) {
-  constexpr TripleTable kTriples;
-  double pairs[6][6][kQuadric];  // minors of columns 1 and 2
+// The 2 x 2 minors of columns 1 and 2.
+void PairMinors(const Row* rows, double (*pairs)[6][kQuadric]) {
   for (int i = 0; i < 6; ++i) {
     for (int j = i + 1; j < 6; ++j) {
       const auto& a = rows[i].entry;
@@ -125,7 +133,14 @@ bool AddMinors(const Row* rows, MacaulayMatrix<4, 15>* macaulay) {
       AddProduct<1, 1>(a[2], b[1], -1.0, pairs[i][j]);
     }
   }
-  double triples[20][kCubic];  // of columns 1 to 3
+}
+
+constexpr TripleTable kTriples;
+
+// The 3 x 3 minors of columns 1 to 3.
+void TripleMinors(const Row* rows, double (*triples)[kCubic]) {
+  double pairs[6][6][kQuadric];
+  PairMinors(rows, pairs);
   for (int i = 0; i < 6; ++i) {
     for (int j = i + 1; j < 6; ++j) {
       for (int k = j + 1; k < 6; ++k) {
@@ -137,26 +152,34 @@ bool AddMinors(const Row* rows, MacaulayMatrix<4, 15>* macaulay) {
       }
     }
   }
-  for (int left = 14; left >= 0; --left) {
-    // All rows but two; (4, 5) last.
-    constexpr int kLeft[15] = {1 << 4 | 1 << 5, 1 << 3 | 1 << 5, 1 << 3 | 1 << 4, 1 << 2 | 1 << 5,
-                               1 << 2 | 1 << 4, 1 << 2 | 1 << 3, 1 << 1 | 1 << 5, 1 << 1 | 1 << 4,
-                               1 << 1 | 1 << 3, 1 << 1 | 1 << 2, 1 << 0 | 1 << 5, 1 << 0 | 1 << 4,
-                               1 << 0 | 1 << 3, 1 << 0 | 1 << 2, 1 << 0 | 1 << 1};
-    const int set = 63 & ~kLeft[left];
-    double minor[kQuartic] = {};
-    double sign = 1.0;
-    for (int m = 0; m < 4; ++m) {
-      if ((set >> m & 1) == 0) continue;
-      const double* triple = triples[kTriples.index[set & ~(1 << m)]];
-      if (m == 0) AddShifted<3, 1>(triple, sign, minor);
-      if (m == 1) AddShifted<3, 2>(triple, sign, minor);
-      if (m == 2) AddShifted<3, 3>(triple, sign, minor);
-      const double constant = sign * rows[m].entry[0][0];
-      for (int n = 0; n < kCubic; ++n) minor[n] += constant * triple[n];
-      sign = -sign;
+}
+
+// The 4 x 4 minor of the four rows of `set`, by Laplace expansion along column 0.
+void Minor(const Row* rows, const double (*triples)[kCubic], int set, double* minor) {
+  double sign = 1.0;
+  for (int m = 0; m < 4; ++m) {
+    if ((set >> m & 1) == 0) continue;
+    const double* triple = triples[kTriples.index[set & ~(1 << m)]];
+    if (m == 0) AddShifted<3, 1>(triple, sign, minor);
+    if (m == 1) AddShifted<3, 2>(triple, sign, minor);
+    if (m == 2) AddShifted<3, 3>(triple, sign, minor);
+    const double constant = sign * rows[m].entry[0][0];
+    for (int n = 0; n < kCubic; ++n) minor[n] += constant * triple[n];
+    sign = -sign;
+  }
+}
+
+// Adds the fifteen 4 x 4 minors. False if one is zero or not finite.
+bool AddMinors(const Row* rows, MacaulayMatrix<4, 15>* macaulay) {
+  double triples[20][kCubic];
+  TripleMinors(rows, triples);
+  // All rows but two, (0, 1) first.
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i + 1; j < 6; ++j) {
+      double minor[kQuartic] = {};
+      Minor(rows, triples, 63 & ~(1 << i | 1 << j), minor);
+      if (!macaulay->AddMultiples(minor, 4)) return false;
     }
-    if (!macaulay->AddMultiples(minor, 4)) return false;
   }
   return true;
 }

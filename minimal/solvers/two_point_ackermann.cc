@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "rigel/minimal/numerics/polynomial.h"
-#include "rigel/minimal/solvers/unit_baseline.h"
+#include "rigel/minimal/solvers/baseline.h"
 
 namespace rigel {
 namespace {
@@ -11,90 +11,131 @@ namespace {
 // Below this, relative to the rest, a quantity is rounding.
 constexpr double kNegligible = 1e-12;
 
+// Two matches as tau e(z) + k(z) = 0, z = tan(a/2).
+class AckermannSample {
+ public:
+  AckermannSample(const PreparedMatches& matches, const int* sample);
+
+  // False if there is no forward direction within the plane, or nothing moves.
+  bool solvable() const { return solvable_; }
+
+  // Writes the values of z, at most three, and returns their number.
+  int Roots(double* roots) const;
+
+  // Adds the motion of a root z. Adds nothing if tau is not determined.
+  void AddSolution(double z, Solutions* solutions) const;
+
+ private:
+  // (tau, w), orthogonal to the better conditioned row: tau / w is tau, w / z if deflated.
+  Eigen::Vector2d NullVector(double z) const;
+
+  const PreparedMatches& matches_;
+  const PreparedMatch* m_[2];
+  bool solvable_ = false;
+  bool deflated_ = false;     // k is divided by z
+  bool k_vanishes_ = false;   // a camera above the body's origin: one match would do for the angle
+  double fx_ = 0, fz_ = 0;    // the forward direction, a unit vector
+  double e_[2][2], k_[2][3];  // coefficients of each match, ascending
+};
+
+AckermannSample::AckermannSample(const PreparedMatches& matches, const int* sample)
+    : matches_(matches), m_{&matches[sample[0]], &matches[sample[1]]} {
+  // The least share of the forward direction within the plane: less is along the plane's normal.
+  constexpr double kMinForward = 1e-9;
+  const Alignment& alignment = matches.alignment();
+  const double fx = alignment.forward.x();
+  const double fz = alignment.forward.z();
+  const double f_norm = std::sqrt(fx * fx + fz * fz);
+  if (!(f_norm > kMinForward)) return;
+  if (!(m_[0]->parallax2 + m_[1]->parallax2 > kNoParallax2)) return;
+  solvable_ = true;
+  fx_ = fx / f_norm;
+  fz_ = fz / f_norm;
+  deflated_ = alignment.contains_identity && m_[0]->camera1 == m_[0]->camera2 &&
+              m_[1]->camera1 == m_[1]->camera2;
+  double k_size = 0.0;
+  for (int r = 0; r < 2; ++r) {
+    const PreparedMatch& m = *m_[r];
+    e_[r][0] = fx_ * (m.X0 + m.Xc) + fz_ * (m.Z0 + m.Xs);
+    e_[r][1] = fx_ * (m.Xs - m.Z0) + fz_ * (m.X0 - m.Xc);
+    const double k0 = m.K0 + m.Kc;
+    const double k1 = 2.0 * m.Ks;
+    const double k2 = m.K0 - m.Kc;
+    k_[r][0] = deflated_ ? k1 : k0;
+    k_[r][1] = deflated_ ? k2 : k1;
+    k_[r][2] = deflated_ ? 0.0 : k2;
+    k_size += std::abs(k_[r][0]) + std::abs(k_[r][1]) + std::abs(k_[r][2]);
+  }
+  k_vanishes_ = k_size < kNegligible;
+}
+
+int AckermannSample::Roots(double* roots) const {
+  if (k_vanishes_) {
+    // e(z) = 0 of both matches, by least squares.
+    const double slope2 = e_[0][1] * e_[0][1] + e_[1][1] * e_[1][1];
+    if (!(slope2 > 0.0)) return 0;
+    roots[0] = -(e_[0][0] * e_[0][1] + e_[1][0] * e_[1][1]) / slope2;
+    return 1;
+  }
+  // e1 k2 - e2 k1.
+  const double c[4] = {
+      e_[0][0] * k_[1][0] - e_[1][0] * k_[0][0],
+      e_[0][0] * k_[1][1] + e_[0][1] * k_[1][0] - e_[1][0] * k_[0][1] - e_[1][1] * k_[0][0],
+      e_[0][0] * k_[1][2] + e_[0][1] * k_[1][1] - e_[1][0] * k_[0][2] - e_[1][1] * k_[0][1],
+      e_[0][1] * k_[1][2] - e_[1][1] * k_[0][2]};
+  return deflated_ ? RealRoots<2>(c, roots) : RealRoots<3>(c, roots);
+}
+
+Eigen::Vector2d AckermannSample::NullVector(double z) const {
+  if (k_vanishes_) return {1.0, 0.0};
+  double tau = 0.0;
+  double w = 0.0;
+  double best = 0.0;
+  for (int r = 0; r < 2; ++r) {
+    const double er = e_[r][0] + z * e_[r][1];
+    const double kr = k_[r][0] + z * (k_[r][1] + z * k_[r][2]);
+    const double norm2 = er * er + kr * kr;
+    if (norm2 > best) {
+      best = norm2;
+      tau = -kr;
+      w = er;
+    }
+  }
+  return {tau, w};
+}
+
+void AckermannSample::AddSolution(double z, Solutions* solutions) const {
+  const Eigen::Vector2d v = NullVector(z);
+  const double tau = v[0];
+  const double w = v[1];
+  if (tau == 0.0 && w == 0.0) return;
+  const double inverse = 1.0 / (1.0 + z * z);
+  const double c = (1.0 - z * z) * inverse;
+  const double s = 2.0 * z * inverse;
+  if (!std::isfinite(c + s + tau + w)) return;
+
+  // R_y(a/2) f sqrt(1 + z^2).
+  const Eigen::Vector3d chord(fx_ + z * fz_, 0.0, fz_ - z * fx_);
+  const bool has_scale =
+      std::abs(w) > kNegligible * std::abs(tau) && (!deflated_ || std::abs(z) > kNoTurn);
+  const PreparedMatch& reference = m_[0]->parallax2 >= m_[1]->parallax2 ? *m_[0] : *m_[1];
+  const Eigen::Vector3d t = has_scale ? chord * ((deflated_ ? z : 1.0) * tau * inverse / w)
+                                      : UnitBaselineTranslation(reference, c, s, chord);
+  Solution& solution = solutions->Append();
+  solution.R = matches_.alignment().Rotation(c, s);
+  solution.t = matches_.alignment().ToFrame2(t);
+  solution.has_scale = has_scale;
+}
+
 }  // namespace
 
 int Solve2ptAckermann(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
   solutions->clear();
-  const Alignment& alignment = matches.alignment();
-  double fx = alignment.forward.x();
-  double fz = alignment.forward.z();
-  const double f_norm = std::sqrt(fx * fx + fz * fz);
-  if (!(f_norm > 1e-9)) return 0;
-  fx /= f_norm;
-  fz /= f_norm;
-
-  const PreparedMatch* m[2] = {&matches[sample[0]], &matches[sample[1]]};
-  const bool deflated = alignment.contains_identity && m[0]->camera1 == m[0]->camera2 &&
-                        m[1]->camera1 == m[1]->camera2;
-  double e[2][2], k[2][3];
-  double k_size = 0.0;
-  for (int r = 0; r < 2; ++r) {
-    e[r][0] = fx * (m[r]->X0 + m[r]->Xc) + fz * (m[r]->Z0 + m[r]->Xs);
-    e[r][1] = fx * (m[r]->Xs - m[r]->Z0) + fz * (m[r]->X0 - m[r]->Xc);
-    const double k0 = m[r]->K0 + m[r]->Kc;
-    const double k1 = 2.0 * m[r]->Ks;
-    const double k2 = m[r]->K0 - m[r]->Kc;
-    k[r][0] = deflated ? k1 : k0;
-    k[r][1] = deflated ? k2 : k1;
-    k[r][2] = deflated ? 0.0 : k2;
-    k_size += std::abs(k[r][0]) + std::abs(k[r][1]) + std::abs(k[r][2]);
-  }
-
-  if (!(m[0]->parallax2 + m[1]->parallax2 > kNoParallax2)) return 0;
+  const AckermannSample system(matches, sample);
+  if (!system.solvable()) return 0;
   double roots[3];
-  int num_roots = 0;
-  // A camera above the body's origin: k vanishes, and one match would do for the angle.
-  const bool k_vanishes = k_size < kNegligible;
-  if (k_vanishes) {
-    const double slope2 = e[0][1] * e[0][1] + e[1][1] * e[1][1];
-    if (slope2 > 0.0) roots[num_roots++] = -(e[0][0] * e[0][1] + e[1][0] * e[1][1]) / slope2;
-  } else {
-    const double c[4] = {
-        e[0][0] * k[1][0] - e[1][0] * k[0][0],
-        e[0][0] * k[1][1] + e[0][1] * k[1][0] - e[1][0] * k[0][1] - e[1][1] * k[0][0],
-        e[0][0] * k[1][2] + e[0][1] * k[1][1] - e[1][0] * k[0][2] - e[1][1] * k[0][1],
-        e[0][1] * k[1][2] - e[1][1] * k[0][2]};
-    num_roots = deflated ? RealRoots<2>(c, roots) : RealRoots<3>(c, roots);
-  }
-
-  for (int n = 0; n < num_roots; ++n) {
-    const double z = roots[n];
-    // (tau, 1), or (tau, z) if deflated, is orthogonal to the rows (e, k).
-    double tau = 0.0;
-    double w = 0.0;
-    double best = 0.0;
-    for (int r = 0; r < 2; ++r) {
-      const double er = e[r][0] + z * e[r][1];
-      const double kr = k[r][0] + z * (k[r][1] + z * k[r][2]);
-      const double norm2 = er * er + kr * kr;
-      if (norm2 > best) {
-        best = norm2;
-        tau = -kr;
-        w = er;
-      }
-    }
-    if (k_vanishes) {
-      tau = 1.0;
-      w = 0.0;
-    }
-    if (tau == 0.0 && w == 0.0) continue;
-    const double inverse = 1.0 / (1.0 + z * z);
-    const double c = (1.0 - z * z) * inverse;
-    const double s = 2.0 * z * inverse;
-    if (!std::isfinite(c + s + tau + w)) continue;
-
-    // R_y(a/2) f sqrt(1 + z^2).
-    const Eigen::Vector3d chord(fx + z * fz, 0.0, fz - z * fx);
-    const bool has_scale =
-        std::abs(w) > kNegligible * std::abs(tau) && (!deflated || std::abs(z) > 1e-8);
-    const PreparedMatch& reference = m[0]->parallax2 >= m[1]->parallax2 ? *m[0] : *m[1];
-    const Eigen::Vector3d t = has_scale ? chord * ((deflated ? z : 1.0) * tau * inverse / w)
-                                        : UnitBaselineTranslation(reference, c, s, chord);
-    Solution& solution = solutions->Append();
-    solution.R = alignment.Rotation(c, s);
-    solution.t = alignment.ToFrame2(t);
-    solution.has_scale = has_scale;
-  }
+  const int num_roots = system.Roots(roots);
+  for (int n = 0; n < num_roots; ++n) system.AddSolution(roots[n], solutions);
   return solutions->size();
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rigel/minimal/solvers/unit_baseline.h"
+#include "rigel/minimal/solvers/baseline.h"
 
 namespace rigel {
 

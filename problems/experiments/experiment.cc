@@ -11,7 +11,7 @@ namespace rigel {
 namespace {
 
 // Pixels: with less, images without noise would have hardly an inlier for a first-order solver.
-constexpr double kMinThresholdPx = 0.5;
+constexpr double kThresholdFloorPx = 0.5;
 // Sigmas of the image noise: nearly all inliers are within three.
 constexpr double kThresholdSigmas = 3.0;
 
@@ -40,7 +40,7 @@ EstimateOptions ExperimentEstimate(const std::string& solver, const std::string&
                                    double noise_px) {
   EstimateOptions options;
   options.solver = solver;
-  options.ransac.threshold_px = std::max(kMinThresholdPx, kThresholdSigmas * noise_px);
+  options.ransac.threshold_px = std::max(kThresholdFloorPx, kThresholdSigmas * noise_px);
   if (loop == kPaperLoop) {
     options.ransac.score = ScoreKind::kInlierCount;
     options.ransac.confidence = 0.99;

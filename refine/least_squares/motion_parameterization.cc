@@ -161,10 +161,6 @@ void MotionParameterization::Evaluate(const double* parameters, Pose* pose,
       }
       break;
     }
-    case TranslationForm::kPlane:
-      pose->t = start_.t + tangent_ * Eigen::Vector2d(p[0], p[1]);
-      if (basis != nullptr) basis->block<3, 2>(3, column) = tangent_;
-      break;
     case TranslationForm::kCircle: {
       const double c = std::cos(p[0]);
       const double s = std::sin(p[0]);
@@ -174,6 +170,10 @@ void MotionParameterization::Evaluate(const double* parameters, Pose* pose,
       }
       break;
     }
+    case TranslationForm::kPlane:
+      pose->t = start_.t + tangent_ * Eigen::Vector2d(p[0], p[1]);
+      if (basis != nullptr) basis->block<3, 2>(3, column) = tangent_;
+      break;
     case TranslationForm::kDepths:
     case TranslationForm::kDepth:
     case TranslationForm::kPlanarDepths:

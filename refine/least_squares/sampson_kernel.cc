@@ -1,6 +1,7 @@
 #include "rigel/refine/least_squares/sampson_kernel.h"
 
-#include <math.h>
+// Not <cmath>: its inline functions could be shared with code for other processors.
+#include <math.h>  // NOLINT(modernize-deprecated-headers)
 
 #include "rigel/core/sampson_terms.h"
 

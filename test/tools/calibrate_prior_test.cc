@@ -287,7 +287,7 @@ TEST_F(CalibratePriorTest, WhatAKilledRunHadWrittenIsFinished) {
   const Outcome run = RunTool("calibrate_prior", args);
   EXPECT_EXIT_CODE(run, 0);
   EXPECT_THAT(Lines(run.err),
-              ElementsAre("an interrupted run is finished: 3 of 30 files take their places",
+              ElementsAre("finished an interrupted run: replaced 3 of 30 files",
                           "nothing is written: all 30 files are calibrated so already"));
   size_t files = 0;
   for (const auto& entry : fs::directory_iterator(matches)) {

@@ -477,7 +477,7 @@ TEST_F(CompareTest, AWrongPriorOfANamedSolverIsTold) {
       "compare", {"--matches=" + matches, "--solvers=4pt,auto", "--prior=truth",
                   "--prior_noise_deg=8", "--prior_noise_axis=random", "--per_pair", "--json=-"});
   EXPECT_THAT(Lines(run.err), testing::Contains(testing::AllOf(HasSubstr("doubtful: 4pt: "),
-                                                               HasSubstr("is the prior right"))));
+                                                               HasSubstr("check the prior"))));
   const Json report = ParseReport(run.out);
   int doubtful = 0;
   for (const Json& pair : report["pair_results"]) {

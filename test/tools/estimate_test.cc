@@ -481,7 +481,7 @@ TEST_F(EstimateTest, StdoutIsNoInput) {
   const std::string command =
       program + " --matches=" + matches + " >>" + matches + " 2>" + Path("err");
   EXPECT_NE(std::system(command.c_str()), 0);
-  EXPECT_THAT(ReadText(Path("err")), HasSubstr("stdout: is the input " + matches));
+  EXPECT_THAT(ReadText(Path("err")), HasSubstr("stdout: would overwrite the input " + matches));
   EXPECT_EQ(ReadText(matches), before);
 }
 

@@ -215,7 +215,7 @@ TEST_F(EstimateTrajectoryTest, TwoOutputsInOneFileAreRefused) {
       const Outcome run = RunTool("estimate", matches + Args{"--" + flags[i] + "=" + Path("f"),
                                                              "--" + flags[k] + "=" + Path("./f")});
       EXPECT_EXIT_CODE(run, 2);
-      EXPECT_THAT(run.err, HasSubstr("that of --" + flags[i] + " goes to this file already"));
+      EXPECT_THAT(run.err, HasSubstr(": --" + flags[i] + " writes to this file already"));
     }
   }
   const std::string inter = Simulate("inter", {"--pairs=1", "--inter_share=0.5"});

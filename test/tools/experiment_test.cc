@@ -409,7 +409,7 @@ TEST_F(PlotTest, SaysWhatItCannotDraw) {
     const Outcome page =
         RunTool("plot.py", {"--estimate=" + Path(name), "--html=" + Path(name), output});
     EXPECT_EXIT_CODE(page, 1);
-    EXPECT_THAT(page.err, HasSubstr("is the input " + Path(name)));
+    EXPECT_THAT(page.err, HasSubstr("would overwrite the input " + Path(name)));
   }
   EXPECT_EXIT_CODE(RunTool("plot.py", {output}), 2);
   EXPECT_EXIT_CODE(RunTool("plot.py", {"--help"}), 0);

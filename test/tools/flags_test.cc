@@ -242,7 +242,7 @@ TEST(Flags, PosesHaveTheirOwnMotionsAndFramesNeedPoses) {
   ExpectUsageError("simulate", {"--every=2"},
                    "--every: there are no recorded motions without --poses");
   ExpectUsageError("simulate", {"--every=0"}, "--every: expected at least 1");
-  ExpectUsageError("simulate", {"--threads=0"}, "--threads: expected 1 to 1024");
+  ExpectUsageError("simulate", {"--threads=0"}, "--threads=0: expected 1 to 1024");
 }
 
 TEST(Flags, UnwritableOutputFileFails) {
@@ -323,10 +323,10 @@ TEST_F(Outputs, OnlyOneReportFitsOnStdout) {
   for (const char* tool : {"estimate", "compare"}) {
     ExpectUsageError(tool, {"--json=-", "--csv=-"}, "--csv=-");
   }
-  ExpectUsageError("estimate", {"--json=-", "--g2o=-"}, "--g2o=-: stdout has that of --json");
-  ExpectUsageError("compare", {"--json=-", "--csv=-"}, "--csv=-: stdout has that of --json");
-  ExpectUsageError("compare", {"--json=f", "--csv=./f"}, "--csv=./f: that of --json goes to");
-  ExpectUsageError("estimate", {"--csv=-", "--g2o=-"}, "--g2o=-: stdout has that of --csv");
+  ExpectUsageError("estimate", {"--json=-", "--g2o=-"}, "--g2o=-: --json goes to stdout already");
+  ExpectUsageError("compare", {"--json=-", "--csv=-"}, "--csv=-: --json goes to stdout already");
+  ExpectUsageError("compare", {"--json=f", "--csv=./f"}, "--csv=./f: --json writes to");
+  ExpectUsageError("estimate", {"--csv=-", "--g2o=-"}, "--g2o=-: --csv goes to stdout already");
 }
 
 }  // namespace

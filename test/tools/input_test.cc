@@ -60,7 +60,7 @@ TEST_F(InputTest, StdinAndCompressedFilesAreReadAsFilesAre) {
   for (const std::string& output : {std::string("--in_place"), "--output=" + Path("out")}) {
     const Outcome write = RunTool("calibrate_prior", {"--matches=-", output});
     EXPECT_EXIT_CODE(write, 2);
-    EXPECT_THAT(write.err, HasSubstr("stdin has no file whose lines could be written"));
+    EXPECT_THAT(write.err, HasSubstr("stdin cannot be written to"));
   }
 }
 

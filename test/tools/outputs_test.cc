@@ -7,6 +7,7 @@
 
 #include <filesystem>
 
+#include "rigel/problems/io/match_file.h"
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {
@@ -56,7 +57,7 @@ TEST_F(OutputsTest, AnInputIsNoOutputByAnyName) {
           RunTool("estimate", {"--matches=" + matches_, "--" + std::string(flag) + "=" + output});
       EXPECT_EXIT_CODE(run, 2);
       EXPECT_THAT(Lines(run.err)[0], AllOf(HasSubstr("--" + std::string(flag) + "=" + output),
-                                           HasSubstr("is the input " + file_)));
+                                           HasSubstr("would overwrite the input " + file_)));
       EXPECT_THAT(run.out, IsEmpty());
     }
     for (const char* tool : {"calibrate_prior", "compare"}) {
@@ -88,7 +89,7 @@ TEST_F(OutputsTest, AMergedReportIsNoOutput) {
   const std::string before = ReadText(report);
   const Outcome run = RunTool("compare", {"--merge=" + report, "--csv=" + Path("./0.json")});
   EXPECT_EXIT_CODE(run, 2);
-  EXPECT_THAT(run.err, HasSubstr("is the input " + report));
+  EXPECT_THAT(run.err, HasSubstr("would overwrite the input " + report));
   EXPECT_EQ(ReadText(report), before);
 }
 
@@ -186,7 +187,7 @@ TEST_F(OutputsTest, OneExperimentADirectory) {
   const Outcome page =
       RunTool("experiment", args + Args{"--overwrite", "--html=" + Path("out/outliers.csv")});
   EXPECT_EXIT_CODE(page, 2);
-  EXPECT_THAT(page.err, HasSubstr("goes to this file already"));
+  EXPECT_THAT(page.err, HasSubstr("writes to this file already"));
 }
 
 TEST_F(OutputsTest, AFlagFileNamesNoOther) {
@@ -198,13 +199,17 @@ TEST_F(OutputsTest, AFlagFileNamesNoOther) {
   WriteText(itself, "--solver=4pt\n  -flagfile=" + itself + "\n");
   WriteText(Path("environment"), "--fromenv=flagfile\n");
   WriteText(Path("large"), std::string((1 << 20) + 1, '#'));
+  WriteText(Path("binary"), std::string("--solver=4pt\n\0", 14));
+  WriteText(Path("packed"), MatchFileBytes("x.gz", "--solver=4pt\n"));
   const std::pair<Args, std::string> wrong[] = {
       {{"--flagfile=" + itself}, itself + ": line 2: --flagfile is not taken from a flag file"},
       {{"-flagfile", itself}, itself + ": line 2"},
       {{"--flagfile=" + Path("good") + "," + itself}, itself + ": line 2"},
       {{"--flagfile=" + Path("environment")}, "line 1: --fromenv is not taken"},
       {{"--fromenv=solver,flagfile"}, "--fromenv=flagfile: a flag file is only taken"},
-      {{"--flagfile=" + Path("large")}, "larger than 1 MiB"},
+      {{"--flagfile=" + Path("large")}, "expected no more than 1048576 bytes"},
+      {{"--flagfile=" + Path("packed")}, Path("packed") + ": compressed, expected plain text"},
+      {{"--flagfile=" + Path("binary")}, Path("binary") + ": a NUL byte, expected UTF-8 text"},
       {{"--flagfile=/dev/zero"}, "/dev/zero: no regular file, expected one"},
       {{"--flagfile=" + Path("none")}, Path("none") + ": cannot be opened"},
   };
@@ -246,7 +251,7 @@ TEST_F(OutputsTest, AFlagFileIsAnInput) {
   WriteText(flags, text);
   const Outcome run = RunTool("estimate", {"--flagfile=" + flags});
   EXPECT_EXIT_CODE(run, 2);
-  EXPECT_THAT(run.err, HasSubstr("is the input " + flags));
+  EXPECT_THAT(run.err, HasSubstr("would overwrite the input " + flags));
   EXPECT_EQ(ReadText(flags), text);
 }
 

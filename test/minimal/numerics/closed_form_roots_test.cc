@@ -18,7 +18,6 @@ namespace rigel {
 namespace {
 
 using polynomial_internal::Bracket;
-using polynomial_internal::BracketedNewton;
 using polynomial_internal::CosAndSinOfThird;
 using polynomial_internal::IsolatedRoots;
 using polynomial_internal::kUndecided;
@@ -26,6 +25,7 @@ using polynomial_internal::LanesOf;
 using polynomial_internal::NewtonFromGoodStarts;
 using polynomial_internal::PolynomialInLanes;
 using polynomial_internal::PowerOfTwoRoot;
+using polynomial_internal::RootsInBrackets;
 using polynomial_internal::RootsInClosedForm;
 
 double Nearest(const double* roots, int count, double x) {
@@ -213,11 +213,11 @@ TEST(JointNewton, FindsTheRootsOfEqualBracketsAndOfPoints) {
   Bracket mirrored = {1.0, 4.0, 3.9, true, false, true};
   // Fewer brackets than lanes: the first one fills them.
   double roots[5];
-  BracketedNewton<5>(c, &first, 1, roots);
+  RootsInBrackets<5>(c, &first, 1, roots);
   EXPECT_NEAR(roots[0], 0.25, 1e-12);
   // The same bracket twice is solved twice, and a point stays.
   const Bracket brackets[] = {second, second, point, far, mirrored};
-  BracketedNewton<5>(c, brackets, 5, roots);
+  RootsInBrackets<5>(c, brackets, 5, roots);
   EXPECT_NEAR(roots[0], 0.5, 1e-12);
   EXPECT_EQ(roots[0], roots[1]);
   EXPECT_NEAR(roots[2], 0.25, 1e-12);
@@ -231,7 +231,7 @@ TEST(JointNewton, ReadsNoBracketWhereThereIsNone) {
   Bracket garbage;
   std::memset(static_cast<void*>(&garbage), 0xcf, sizeof(garbage));
   double roots[4] = {7.0, 7.0, 7.0, 7.0};
-  BracketedNewton<4>(c, &garbage, 0, roots);
+  RootsInBrackets<4>(c, &garbage, 0, roots);
   for (const double root : roots) EXPECT_EQ(root, 7.0);
 }
 
