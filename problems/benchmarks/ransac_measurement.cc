@@ -22,6 +22,7 @@ namespace {
 constexpr int kRepetitions = 3;
 // Multiples of the Cramer-Rao bound (1 sigma) of the rotation. Noise alone seldom exceeds three.
 constexpr double kSuccessBounds = 3.0;
+
 // Outliers and matches of the car are found by a second scene without them: their pixels differ.
 std::optional<RansacProblem> MakeProblem(const SceneOptions& scene, int index) {
   RansacProblem problem;

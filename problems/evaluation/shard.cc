@@ -5,6 +5,7 @@
 #include "rigel/problems/io/parse_number.h"
 
 namespace rigel {
+
 std::pair<int, int> Shard::Range(int n) const {
   const auto begin = [&](int64_t i) { return static_cast<int>(i * n / count); };
   return {begin(index), begin(int64_t{index} + 1)};
