@@ -65,7 +65,8 @@ bool MakeAlignment(const MotionPrior& prior, PriorKind kind, Alignment* alignmen
       break;
     }
   }
-  result.contains_identity = (result.A1 - result.A2).norm() < 1e-12;
+  constexpr double kSameFrames = 1e-12;  // of the norm of A1 - A2: rounding
+  result.contains_identity = (result.A1 - result.A2).norm() < kSameFrames;
 
   Eigen::Matrix3d along = Eigen::Matrix3d::Zero();
   along(1, 1) = 1.0;

@@ -50,8 +50,9 @@ Eigen::Vector3d NearestAxisAcross(const Eigen::Vector3d& v, const Eigen::Vector3
   const int along = LargestOf(direction);
   Eigen::Vector3d across = Across(v, direction);
   across(along) = 0.0;
-  // v is along `direction`, and any of them as near.
-  if (!(across.norm() > 1e-9)) across = Eigen::Vector3d::Unit((along + 1) % 3);
+  // v is along `direction`, but for rounding, and any of them as near.
+  constexpr double kAlong = 1e-9;
+  if (!(across.norm() > kAlong)) across = Eigen::Vector3d::Unit((along + 1) % 3);
   return NearestAxis(across);
 }
 

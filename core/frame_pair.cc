@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include <Eigen/LU>
-
 namespace rigel {
 
 bool FramePair::IsValid(std::string* error) const {
@@ -26,13 +24,9 @@ bool FramePair::IsValid(std::string* error) const {
       return false;
     }
   }
-  if (truth) {
-    const Eigen::Matrix3d& R = truth->R;
-    if (!truth->AllFinite() || !((R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < 1e-6) ||
-        R.determinant() < 0) {
-      *error = "the truth is not a finite motion with a rotation matrix";
-      return false;
-    }
+  if (truth && !(truth->AllFinite() && IsRotation(truth->R))) {
+    *error = "the truth is not a finite motion with a rotation matrix";
+    return false;
   }
   if (noise_px && !(*noise_px > 0 && std::isfinite(*noise_px))) {
     *error = "noise_px must be positive and finite";

@@ -2,9 +2,17 @@
 
 #include <cmath>
 
+#include <Eigen/LU>
+
 #include "rigel/core/angles.h"
 
 namespace rigel {
+namespace {
+
+// Radians, below which the series of sin(x/2)/x and atan2(x, w)/x are exact to rounding.
+constexpr double kSmallAngle = 1e-6;
+
+}  // namespace
 
 Pose Pose::FromQuaternion(const UnalignedQuaternion& q, const Eigen::Vector3d& t) {
   Pose pose;
@@ -34,6 +42,14 @@ Pose operator*(const Pose& c_from_b, const Pose& b_from_a) {
   return c_from_a;
 }
 
+bool IsRotation(const Eigen::Matrix3d& R) {
+  // Of the norm of R'R - I: what files with seven digits keep.
+  constexpr double kMaxError = 1e-6;
+  const Eigen::Matrix3d RtR = R.transpose() * R;
+  return R.allFinite() && (RtR - Eigen::Matrix3d::Identity()).norm() < kMaxError &&
+         !(R.determinant() < 0);
+}
+
 Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
@@ -53,7 +69,7 @@ Eigen::Matrix3d ExpSO3(const Eigen::Vector3d& omega) {
   // where the quotient would lose digits.
   const double angle = omega.norm();
   const double half = 0.5 * angle;
-  const double k = angle > 1e-6 ? std::sin(half) / angle : 0.5 - angle * angle / 48.0;
+  const double k = angle > kSmallAngle ? std::sin(half) / angle : 0.5 - angle * angle / 48.0;
   const Eigen::Quaterniond q(std::cos(half), k * omega.x(), k * omega.y(), k * omega.z());
   return q.normalized().toRotationMatrix();
 }
@@ -64,8 +80,8 @@ Eigen::Vector3d LogSO3(const Eigen::Matrix3d& R) {
   if (q.w() < 0) q.coeffs() = -q.coeffs();
   const double sin_half = q.vec().norm();
   // atan2(x, w)/x -> 1/w - x^2/(3 w^3).
-  const double k = sin_half > 1e-6 ? 2.0 * std::atan2(sin_half, q.w()) / sin_half
-                                   : 2.0 / q.w() * (1.0 - sin_half * sin_half / 3.0);
+  const double k = sin_half > kSmallAngle ? 2.0 * std::atan2(sin_half, q.w()) / sin_half
+                                          : 2.0 / q.w() * (1.0 - sin_half * sin_half / 3.0);
   return k * q.vec();
 }
 
@@ -74,9 +90,10 @@ Eigen::Matrix3d LeftJacobianSO3(const Eigen::Vector3d& omega) {
   const double a = std::sqrt(a2);
   const Eigen::Matrix3d W = Skew(omega);
   // (1 - cos a)/a^2 and (a - sin a)/a^3, by series where they would cancel.
+  constexpr double kCancelling = 1e-3;  // radians: half the digits of a - sin a are left
   double p = 0.5 - a2 / 24.0;
   double q = 1.0 / 6.0 - a2 / 120.0;
-  if (a > 1e-3) {
+  if (a > kCancelling) {
     const double sin_half = std::sin(0.5 * a);
     p = 2.0 * sin_half * sin_half / a2;
     q = (a - std::sin(a)) / (a2 * a);
@@ -91,12 +108,15 @@ Eigen::Matrix3d SmallestRotation(const Eigen::Vector3d& a, const Eigen::Vector3d
     // Half a turn about an axis across a, then the rest from -a: near b = -a the cross product has
     // lost its digits, but an axis made perpendicular to a has not.
     const Eigen::Vector3d across = v - a * (a.dot(v) / a.squaredNorm());
-    const Eigen::Vector3d axis = across.norm() > 1e-15 ? Eigen::Vector3d(across.normalized())
-                                                       : Eigen::Vector3d(TangentBasis(a).col(0));
+    constexpr double kOpposite = 1e-15;  // b = -a but for rounding: any axis across a will do
+    const Eigen::Vector3d axis = across.norm() > kOpposite
+                                     ? Eigen::Vector3d(across.normalized())
+                                     : Eigen::Vector3d(TangentBasis(a).col(0));
     return SmallestRotation(-a, b) * ExpSO3(kPi * axis);
   }
   const double sin_angle = v.norm();
-  if (sin_angle < 1e-12) return ExpSO3(v);
+  constexpr double kTiny = 1e-12;  // radians, where the angle is its sine to rounding
+  if (sin_angle < kTiny) return ExpSO3(v);
   return ExpSO3(std::atan2(sin_angle, c) / sin_angle * v);
 }
 

@@ -35,6 +35,9 @@ static_assert(kSameLayoutEverywhere<Pose>, "no member of Pose may be aligned");
 // c_from_a = c_from_b * b_from_a.
 Pose operator*(const Pose& c_from_b, const Pose& b_from_a);
 
+// True if R is finite and a rotation: R'R = I to 1e-6, det R > 0.
+bool IsRotation(const Eigen::Matrix3d& R);
+
 // [v]x, so that Skew(v) * w = v x w.
 Eigen::Matrix3d Skew(const Eigen::Vector3d& v);
 

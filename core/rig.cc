@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <Eigen/LU>
+#include "rigel/core/pose.h"
 
 namespace rigel {
 
@@ -19,9 +19,7 @@ bool Rig::IsValid(std::string* error) const {
       *error = name + ": principal point and position must be finite";
       return false;
     }
-    const Eigen::Matrix3d QtQ = camera.Q.transpose() * camera.Q;
-    if (!camera.Q.allFinite() || !((QtQ - Eigen::Matrix3d::Identity()).norm() < 1e-6) ||
-        camera.Q.determinant() < 0) {
+    if (!IsRotation(camera.Q)) {
       *error = name + ": Q must be a rotation matrix";
       return false;
     }

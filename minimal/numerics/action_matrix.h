@@ -53,21 +53,21 @@ class RealSolutions {
       bool done[kLanes];
       for (int l = 0; l < kLanes; ++l) {
         at[l] = x[std::min(first + l, count - 1)];
-        last[l] = at[l] + 1e-7 * (0.01 + std::abs(at[l]));
+        last[l] = at[l] + kSecantStart * (kZeroRoot + std::abs(at[l]));
         done[l] = false;
       }
       Determinants(last, last_value);
-      for (int k = 0; k < 4; ++k) {
+      for (int k = 0; k < kSecantSteps; ++k) {
         Determinants(at, value);
         bool all = true;
         for (int l = 0; l < kLanes; ++l) {
           const double step = value[l] * (last[l] - at[l]) / (last_value[l] - value[l]);
-          done[l] = done[l] || !(std::abs(step) < 0.05 * (0.1 + std::abs(at[l])));
+          done[l] = done[l] || !(std::abs(step) < kFarStep * (kFarRoot + std::abs(at[l])));
           if (!done[l]) {
             last[l] = at[l];
             last_value[l] = value[l];
             at[l] -= step;
-            done[l] = std::abs(step) < kRefined * (0.01 + std::abs(at[l]));
+            done[l] = std::abs(step) < kRefined * (kZeroRoot + std::abs(at[l]));
           }
           all = all && done[l];
         }
@@ -100,9 +100,18 @@ class RealSolutions {
   static_assert(kSize % 4 == 0);
   // Values of x at once: the rows of one are a chain of operations, and the others fill the time.
   static constexpr int kLanes = 4;
-  // Step, relative to the root and to 0.01 near zero, after which Refine() ends: well above
-  // rounding, and the next step of the secant method would be far smaller.
+  // The constants of Refine(). A root below this, in the unit of x, counts as one of this size.
+  static constexpr double kZeroRoot = 0.01;
+  // The second point of the secant method, relative to the root: beyond the error of the first.
+  static constexpr double kSecantStart = 1e-7;
+  // The step after which it ends, relative to the root: well above rounding, and the next step
+  // would be far smaller.
   static constexpr double kRefined = 1e-12;
+  static constexpr int kSecantSteps = 4;  // at most: from 1e-7 three reach rounding
+  // A step that is not shorter than these say leads to another root, and is not taken: a share of
+  // the root, where that is larger than the second number, in the unit of x.
+  static constexpr double kFarStep = 0.05;
+  static constexpr double kFarRoot = 0.1;
 
   static constexpr int Down(int k) { return k & ~3; }
   static constexpr int Up(int k) { return (k + 3) & ~3; }

@@ -16,24 +16,34 @@ namespace rigel::polynomial_internal {
 inline constexpr double kSqrt3 = 1.73205080756887729353;
 inline constexpr int kUndecided = -1;
 
+// Interpolations at the Chebyshev nodes of [0, 1], of degrees 8 and 9, ascending in u: of
+// cos(2/3 acos(u)), and of sin(2/3 acos(u)) / sqrt(1 - u^2). The test ChebyshevCoefficients of
+// closed_form_roots_test.cc computes these numbers again. One degree more gains a digit that
+// Newton's method gains anyway.
+inline constexpr double kCosineOfThird[9] = {
+    0.500000003733184,     0.5773496613984087,    -0.1110944927672062,
+    0.05327935084772565,   -0.03192541213689045,  0.019600320923119502,
+    -0.010237508312381276, 0.0036541195584302638, -0.0006260453210416017};
+inline constexpr double kSineOfThird[10] = {
+    0.8660253981308746,  -0.33333219731284364,  0.24052423201262865, -0.19701720924169042,
+    0.16792523920306976, -0.13867390493998213,  0.09997340370831578, -0.054957087077968925,
+    0.01938336009625346, -0.0031845708330365597};
+
 // Cosine and sine of acos(r) / 3 for r in [-1, 1], within 6e-9. With u = cos(acos(r) / 2) they are
-// cos(2/3 acos(u)) and sin(2/3 acos(u)) = sqrt(1 - u^2) times a function of u, both smooth on
-// [0, 1]: Chebyshev interpolation of degrees 8 and 9.
+// cos(2/3 acos(u)) and sin(2/3 acos(u)): smooth functions of u, but for the factor sqrt(1 - u^2).
 inline void CosAndSinOfThird(double r, double* cosine, double* sine) {
   const double u = std::sqrt(0.5 * (1.0 + r));
   const double sine_of_half = std::sqrt(0.5 * (1.0 - r));
   const double u2 = u * u;
   const double u4 = u2 * u2;
-  *cosine =
-      ((0.500000003733184 + 0.5773496613984087 * u) +
-       u2 * (-0.1110944927672062 + 0.05327935084772565 * u)) +
-      u4 * ((-0.03192541213689045 + 0.019600320923119502 * u) +
-            u2 * (-0.010237508312381276 + 0.0036541195584302638 * u) - u4 * 0.0006260453210416017);
-  *sine = sine_of_half * (((0.8660253981308746 - 0.33333219731284364 * u) +
-                           u2 * (0.24052423201262865 - 0.19701720924169042 * u)) +
-                          u4 * ((0.16792523920306976 - 0.13867390493998213 * u) +
-                                u2 * (0.09997340370831578 - 0.054957087077968925 * u) +
-                                u4 * (0.01938336009625346 - 0.0031845708330365597 * u)));
+  // Estrin's scheme, as in newton_lanes.h.
+  constexpr const double* c = kCosineOfThird;
+  constexpr const double* s = kSineOfThird;
+  *cosine = ((c[0] + c[1] * u) + u2 * (c[2] + c[3] * u)) +
+            u4 * ((c[4] + c[5] * u) + u2 * (c[6] + c[7] * u) + u4 * c[8]);
+  *sine =
+      sine_of_half * (((s[0] + s[1] * u) + u2 * (s[2] + s[3] * u)) +
+                      u4 * ((s[4] + s[5] * u) + u2 * (s[6] + s[7] * u) + u4 * (s[8] + s[9] * u)));
 }
 
 // Newton's method on p of degree N from `count` <= N starts at once, as the steps of one depend on
@@ -43,7 +53,7 @@ inline bool NewtonFromGoodStarts(const double* c, int count, double* x) {
   // From good starts each step doubles the digits. What takes more steps than these is left to
   // isolation, which is slower and misses nothing.
   constexpr int kMaxSteps = 5;
-  constexpr double kConverged = 1e-9;  // the next step is of the order of its square
+  constexpr double kLastStep = 1e-9;  // relative; the error left is of the order of its square
   // Relative to the root. Closer ones may be one that was found twice, and are left to isolation.
   constexpr double kDistinct = 1e-6;
   const PolynomialInLanes<N> p(c);
@@ -52,7 +62,7 @@ inline bool NewtonFromGoodStarts(const double* c, int count, double* x) {
   for (int n = 0; n < kMaxSteps && !converged; ++n) {
     const Lanes<N> step = p.NewtonStep(lane);
     lane -= step;
-    converged = (step.abs() <= kConverged * lane.abs()).all();
+    converged = (step.abs() <= kLastStep * lane.abs()).all();
   }
   if (!converged) return false;
   for (int i = 0; i < count; ++i) {
@@ -64,12 +74,13 @@ inline bool NewtonFromGoodStarts(const double* c, int count, double* x) {
   return true;
 }
 
+// Relative to the terms of a difference whose sign decides whether roots are real. The sign of a
+// smaller one may be that of the errors, of which the largest is the 6e-9 of CosAndSinOfThird().
+inline constexpr double kUncertainSign = 1e-6;
+
 // The real roots of a quartic, to some 1e-7 of the largest, by Ferrari's resolvent; kUndecided
 // where a pair of them may be real or complex.
 inline int QuarticStarts(const double* c, double* x) {
-  // Relative to the terms of each difference below. The sign of a smaller one may be that of the
-  // errors, of which the largest is the 6e-9 of CosAndSinOfThird().
-  constexpr double kOpen = 1e-6;
   const double inverse = 1.0 / c[4];
   const double h = 0.25 * c[3] * inverse;
   const double a2 = c[2] * inverse;
@@ -97,14 +108,16 @@ inline int QuarticStarts(const double* c, double* x) {
     const double A = R > 0 ? -magnitude : magnitude;
     s = A + (A != 0.0 ? Q / A : 0.0) - third;
   }
-  if (!(s > kOpen * std::abs(third)) || !(s * s > kOpen * std::abs(r))) return kUndecided;
+  if (!(s > kUncertainSign * std::abs(third)) || !(s * s > kUncertainSign * std::abs(r)))
+    return kUndecided;
   const double u = std::sqrt(s);
   const double v = 0.5 * (p + s - q / u);
   const double w = 0.5 * (p + s + q / u);
   const double d1 = s - 4.0 * v;
   const double d2 = s - 4.0 * w;
   const double size = s + 4.0 * (std::abs(v) + std::abs(w)) + h2;
-  if (!(std::abs(d1) > kOpen * size) || !(std::abs(d2) > kOpen * size)) return kUndecided;
+  if (!(std::abs(d1) > kUncertainSign * size) || !(std::abs(d2) > kUncertainSign * size))
+    return kUndecided;
   int count = 0;
   if (d1 > 0.0) {
     const double e = std::sqrt(d1);
@@ -123,13 +136,16 @@ inline int QuarticStarts(const double* c, double* x) {
 inline bool SplitFarRoot(const double* c, double* quartic, double* y) {
   // Of y, where the typical root is near 1: the far root is at least four times as large. The
   // nearer one is, the more steps it takes; it is left to isolation then.
-  constexpr double kFar = 0.25;
+  constexpr double kLargestInverse = 0.25;
+  // Newton's method in y, from a good start: each step doubles the digits.
+  constexpr int kMaxSteps = 6;
+  constexpr double kLastStep = 1e-8;  // relative; the error left is of the order of its square
   // Of c[5], which the division may miss by so much: some hundreds of roundings.
-  constexpr double kConverged = 1e-13;
+  constexpr double kRemainder = 1e-13;
   *y = -c[5] / c[4];
-  if (!(std::abs(*y) < kFar)) return false;
+  if (!(std::abs(*y) < kLargestInverse)) return false;
   double step = *y;
-  for (int n = 0; n < 6 && std::abs(step) > 1e-8 * std::abs(*y); ++n) {
+  for (int n = 0; n < kMaxSteps && std::abs(step) > kLastStep * std::abs(*y); ++n) {
     double value = c[0];
     double slope = 0.0;
     for (int k = 1; k <= 5; ++k) {
@@ -139,11 +155,11 @@ inline bool SplitFarRoot(const double* c, double* quartic, double* y) {
     step = value / slope;
     *y -= step;
   }
-  if (!(std::abs(*y) < kFar)) return false;
+  if (!(std::abs(*y) < kLargestInverse)) return false;
   // What is left without it, from the smallest coefficients up: stable for the largest root.
   quartic[0] = c[0];
   for (int k = 1; k <= 4; ++k) quartic[k] = c[k] + *y * quartic[k - 1];
-  return std::abs(c[5] + *y * quartic[4]) <= kConverged * std::abs(c[5]);
+  return std::abs(c[5] + *y * quartic[4]) <= kRemainder * std::abs(c[5]);
 }
 
 // A sextic without its two largest roots, if they are far from the others: those of
@@ -152,7 +168,7 @@ inline bool SplitFarPair(const double* c, double* quartic, double* b, double* g)
   constexpr int kMaxSteps = 8;  // each divides the error by how far the pair is
   // Relative change of g and b^2. Not to the last digit, as Newton's method on the sextic itself
   // follows.
-  constexpr double kConverged = 1e-10;
+  constexpr double kLastChange = 1e-10;
   *g = c[6] / c[4];
   *b = c[5] / c[4];
   quartic[0] = c[0];
@@ -168,7 +184,7 @@ inline bool SplitFarPair(const double* c, double* quartic, double* b, double* g)
     const double change = std::abs(next_g - *g) + std::abs(next_b - *b) * std::abs(*b);
     *g = next_g;
     *b = next_b;
-    if (change <= kConverged * (std::abs(next_g) + next_b * next_b)) return true;
+    if (change <= kLastChange * (std::abs(next_g) + next_b * next_b)) return true;
   }
   return false;
 }
@@ -188,14 +204,11 @@ inline int RootsInClosedForm(const double* c, double* roots) {
     if (!SplitFarRoot(c, quartic, &y)) return kUndecided;
     roots[count++] = 1.0 / y;
   } else {
-    // Relative to the terms of the discriminant. The sign of a smaller one may be that of the
-    // errors of b and g: the two roots may be real or complex.
-    constexpr double kOpen = 1e-6;
     double b, g;
     if (!SplitFarPair(c, quartic, &b, &g)) return kUndecided;
     const double half = 0.5 * b;
     const double discriminant = half * half - g;
-    if (!(std::abs(discriminant) > kOpen * (half * half + std::abs(g)))) return kUndecided;
+    if (!(std::abs(discriminant) > kUncertainSign * (half * half + std::abs(g)))) return kUndecided;
     if (discriminant > 0.0) {
       y = -half - std::copysign(std::sqrt(discriminant), half);
       roots[count++] = 1.0 / y;
@@ -204,10 +217,13 @@ inline int RootsInClosedForm(const double* c, double* roots) {
       y = std::sqrt(g);
     }
   }
+  // The far roots are so many times as large as the others at least, else the closed form may have
+  // left some of the digits that tell them apart.
+  constexpr double kFarRatio = 2.0;
   const int others = QuarticStarts(quartic, roots + count);
   if (others == kUndecided) return kUndecided;
   for (int k = 0; k < others; ++k) {
-    if (!(std::abs(roots[count + k] * y) < 0.5)) return kUndecided;
+    if (!(std::abs(roots[count + k] * y) < 1.0 / kFarRatio)) return kUndecided;
   }
   count += others;
   if (count == 0) return 0;

@@ -16,8 +16,12 @@ int PolishRoots(const double* c, const double* starts, int num_starts, double* r
   // At one degree of rotation three are enough. Each doubles the digits: a start that needs more
   // than these has no root near.
   constexpr int kMaxSteps = 6;
-  // Quadratic convergence: the error left is of the order of the step squared.
-  constexpr double kConverged = 1e-7;
+  // Relative to the root, as are those below. Quadratic convergence: the error left is of the order
+  // of the step squared.
+  constexpr double kLastStep = 1e-7;
+  constexpr double kLargestLastStep = 1e-5;  // more does not converge
+  constexpr double kDuplicate = 1e-9;        // less is one root, found twice
+  constexpr double kZeroRoot = 1e-6;         // radians: for roots below it, relative to it
   if (num_starts == 0) return 0;
   const polynomial_internal::PolynomialInLanes<N> p(c);
   auto z = polynomial_internal::LanesOf<4>(starts, num_starts);
@@ -25,14 +29,15 @@ int PolishRoots(const double* c, const double* starts, int num_starts, double* r
   for (int n = 0; n < kMaxSteps; ++n) {
     step = p.NewtonStep(z);
     z -= step;
-    if (!(step.abs() > kConverged * z.abs()).any()) break;
+    if (!(step.abs() > kLastStep * z.abs()).any()) break;
   }
   int count = 0;
   for (int k = 0; k < num_starts; ++k) {
-    if (!std::isfinite(z[k]) || !(std::abs(step[k]) <= 1e-5 * (1e-6 + std::abs(z[k])))) continue;
+    const double size = kZeroRoot + std::abs(z[k]);
+    if (!std::isfinite(z[k]) || !(std::abs(step[k]) <= kLargestLastStep * size)) continue;
     bool duplicate = false;
     for (int n = 0; n < count; ++n) {
-      duplicate = duplicate || std::abs(roots[n] - z[k]) <= 1e-9 * (1e-6 + std::abs(z[k]));
+      duplicate = duplicate || std::abs(roots[n] - z[k]) <= kDuplicate * size;
     }
     if (!duplicate) roots[count++] = z[k];
   }

@@ -27,6 +27,9 @@ namespace polynomial_internal {
 // for a root beyond 1e14 or so.
 inline constexpr double kTinyLeading = 1e-14;
 
+// Relative to the terms of a discriminant: a few roundings.
+inline constexpr double kDiscriminantRounding = 1e-15;
+
 template <int N>
 inline bool AllFinite(const double* c) {
   // 0 times an infinity or a NaN is a NaN.
@@ -103,7 +106,7 @@ inline int RealRoots<2>(const double* c, double* roots) {
   const double half_b = 0.5 * c[1];
   const double discriminant = half_b * half_b - c[2] * c[0];
   // A double root survives the rounding of its discriminant.
-  if (!(discriminant >= -1e-15 * half_b * half_b)) return 0;
+  if (!(discriminant >= -polynomial_internal::kDiscriminantRounding * half_b * half_b)) return 0;
   const double root = std::sqrt(std::max(discriminant, 0.0));
   const double s = half_b >= 0 ? -half_b - root : -half_b + root;
   roots[0] = s / c[2];
@@ -182,10 +185,14 @@ inline int CubicStarts(const double* c, double* roots) {
     const double B = A != 0.0 ? Q / A : 0.0;
     roots[0] = A + B - third_a;
     count = 1;
-    // On the border the other two coincide.
-    if (std::abs(A - B) <= 1e-7 * (std::abs(A) + std::abs(third_a))) {
+    // On the border the other two coincide. Rounding moves A - B by the root of itself, and the
+    // value there by hundreds of roundings; both relative to their terms.
+    constexpr double kBorder = 1e-7;
+    constexpr double kZeroValue = 1e-13;
+    if (std::abs(A - B) <= kBorder * (std::abs(A) + std::abs(third_a))) {
       const double twice = -0.5 * (A + B) - third_a;
-      if (std::abs(EvaluatePolynomial<3>(c, twice)) <= 1e-13 * PolynomialMagnitude<3>(c, twice)) {
+      if (std::abs(EvaluatePolynomial<3>(c, twice)) <=
+          kZeroValue * PolynomialMagnitude<3>(c, twice)) {
         roots[count++] = twice;
       }
     }
@@ -224,8 +231,10 @@ int RealRoots(const double* c, double* roots) {
   // A double root at zero that rounding has made complex is seen by neither piece beside it.
   double largest = 0.0;
   for (int k = 0; k <= N; ++k) largest = std::max(largest, std::abs(c[k]));
-  if (std::abs(c[0]) <= 4e-15 * largest && std::abs(c[2]) >= 1e-6 * largest &&
-      c[1] * c[1] < 4.0 * c[0] * c[2]) {
+  // c[0] of it is rounding, and c[2], relative to the largest coefficient, not small.
+  constexpr double kCurved = 1e-6;
+  if (std::abs(c[0]) <= polynomial_internal::kValueRounding * largest &&
+      std::abs(c[2]) >= kCurved * largest && c[1] * c[1] < 4.0 * c[0] * c[2]) {
     roots[count++] = 0.0;
   }
 

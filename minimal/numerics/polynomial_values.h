@@ -6,6 +6,13 @@
 
 namespace rigel {
 
+namespace polynomial_internal {
+
+// Relative to PolynomialMagnitude(): a value below this is what rounding leaves of a zero.
+inline constexpr double kValueRounding = 4e-15;
+
+}  // namespace polynomial_internal
+
 // p(x) of degree N by Horner's rule.
 template <int N>
 inline double EvaluatePolynomial(const double* c, double x) {

@@ -79,14 +79,16 @@ inline double AwayFromEnds(double x) {
 // The same from the values p0 and p1 at the ends and the slope d0 at 0: where the chord is zero,
 // or, near 0, the tangent, since roots differ by orders of magnitude.
 inline double FirstGuess(double p0, double d0, double p1) {
+  // Share of the interval within which the tangent is the better guess.
+  constexpr double kNearZero = 0.0625;
   const double chord = p0 / (p0 - p1);
-  return AwayFromEnds(chord < 0.0625 ? std::min(-p0 / d0, 0.0625) : chord);
+  return AwayFromEnds(chord < kNearZero ? std::min(-p0 / d0, kNearZero) : chord);
 }
 
 // True if p(x) is zero but for rounding: between two roots that rounding may have made complex.
 template <int N>
 inline bool IsRounding(const double* c, double x) {
-  return std::abs(EvaluatePolynomial<N>(c, x)) <= 4e-15 * PolynomialMagnitude<N>(c, x);
+  return std::abs(EvaluatePolynomial<N>(c, x)) <= kValueRounding * PolynomialMagnitude<N>(c, x);
 }
 
 // Fills `bracket`, which has the piece's kind, for a piece of one sign variation.
@@ -114,8 +116,8 @@ inline void BracketOfKnownRoot(double root, Bracket* bracket) {
 // True if the roots of a piece of several sign variations count as one.
 template <int N>
 inline bool IsSmallest(const double* c, const BernsteinPiece<N>& piece) {
-  // Both are shares of (0, 1). Roots closer than the first count as one. Below the second they do if
-  // rounding may have made them complex.
+  // These are shares of (0, 1). Roots closer than the first are one root. Roots closer than the
+  // second are one if rounding may have made them complex.
   constexpr double kOneRoot = 1e-9;
   constexpr double kMaybeComplex = 1e-7;
   return piece.width < kOneRoot ||

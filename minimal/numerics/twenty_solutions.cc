@@ -11,6 +11,11 @@ namespace {
 // Solutions, and monomials in the basis of the action matrix.
 constexpr int kSize = 20;
 
+// Relative to the eigenvalue and kFarRoot: a longer Newton step leads to another eigenvalue, and is
+// not taken. Both are in the unit of x.
+constexpr double kFarStep = 0.1;
+constexpr double kFarRoot = 0.1;
+
 // Loops over parts of rows begin at multiples of four, where that takes in zeros or unused
 // numbers only, so that they vectorize without remainders.
 constexpr int Down(int k) { return k & ~3; }
@@ -170,8 +175,7 @@ RIGEL_KERNEL_BODY void Solve(const double (*a)[kSize], int count, const double* 
   for (int k = kSize - 1; k > 0; --k) wv = of_c[k] * wv + of_b[k] * v[k - 1];
   for (int l = 0; l < count; ++l) {
     const double step = c[0][0][l] / wv[l];
-    // Not to another eigenvalue.
-    const bool near = std::fabs(step) < 0.1 * (0.1 + std::fabs(at[l]));
+    const bool near = std::fabs(step) < kFarStep * (kFarRoot + std::fabs(at[l]));
     solutions[l][0] = near ? at[l] + step : at[l];
     solutions[l][1] = y[l];
     solutions[l][2] = z[l];

@@ -8,8 +8,11 @@
 namespace rigel {
 namespace {
 
-// Below this, relative to the rest, a quantity is rounding.
-constexpr double kNegligible = 1e-12;
+// Below these rounding decides: the height of a planar sample's cameras, metres; an entry of F made
+// of unit vectors; and w relative to the depths, 1/m, where the length of t is not determined.
+constexpr double kZeroHeight = 1e-12;
+constexpr double kZeroEntry = 1e-12;
+constexpr double kNoScale = 1e-12;
 
 // sin(a) / a and (1 - cos a) / a, for small angles by their series, to rounding: no division, and
 // faster than std::sin.
@@ -122,7 +125,7 @@ void DepthSystem<kModel>::SetPlanar(const PreparedMatches& matches, const int* s
   f_[0][2][0] = -reference_->x1[1];
   f_[0][2][1] = reference_->x2[1];
   f_[0][2][2] = deflated_ ? 0.0 : height;
-  central_ = std::abs(height) < kNegligible;
+  central_ = std::abs(height) < kZeroHeight;
   for (int k = 0; k < 3 && central_; ++k) {
     central_ = SameArm(matches[sample[k]], *reference_);
   }
@@ -154,7 +157,7 @@ inline bool DepthSystem<kModel>::Moves() const {
   for (int row = 0; row < (planar_ ? 2 : 3); ++row) {
     // As a rule the first entry decides.
     for (int k = 0; k <= kEntryDegree; ++k) {
-      if (std::abs(f_[k][row][0]) > kNegligible || std::abs(f_[k][row][1]) > kNegligible) {
+      if (std::abs(f_[k][row][0]) > kZeroEntry || std::abs(f_[k][row][1]) > kZeroEntry) {
         return true;
       }
     }
@@ -259,8 +262,7 @@ void DepthSystem<kModel>::AddSolution(const PreparedMatches& matches, double z,
   const double by = v[1] * x2[1] - v[0] * x1[1];
   const double bz = v[1] * x2[2] - v[0] * (c * x1[2] - s * x1[0]);
   const double depth = std::abs(v[0]) + std::abs(v[1]);
-  const bool has_scale =
-      std::abs(v[2]) > kNegligible * depth && (!deflated_ || std::abs(z) > kNoTurn);
+  const bool has_scale = std::abs(v[2]) > kNoScale * depth && (!deflated_ || std::abs(z) > kNoTurn);
 
   Eigen::Vector3d t;
   if (has_scale && deflated_) {

@@ -12,8 +12,8 @@ namespace {
 
 using laplace::Pair;
 
-// Below this, relative to the rest, a quantity is rounding.
-constexpr double kNegligible = 1e-12;
+// Relative to the direction: a w below this is rounding, and the length of t is not determined.
+constexpr double kNoScale = 1e-12;
 
 // The null vector of a 4x4 matrix of rank 3 with the columns x, y, z and k; of a matrix that is
 // almost singular, almost the singular vector of its least singular value, that is adj adj' e for
@@ -157,7 +157,7 @@ void DirectSample::AddSolution(double z, Solutions* solutions) const {
   const double w = norm2 * u[3];
   const double c = (1.0 - z2) / norm2;
   const double s = 2.0 * z / norm2;
-  const bool has_scale = !central_ && w * w > kNegligible * kNegligible * direction2 &&
+  const bool has_scale = !central_ && w * w > kNoScale * kNoScale * direction2 &&
                          (!deflated_ || std::abs(z) > kNoTurn);
   Eigen::Vector3d t;
   if (has_scale) {

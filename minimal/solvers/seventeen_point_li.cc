@@ -16,7 +16,7 @@ namespace {
 // Matches: each is one linear equation for the 18 entries of two matrices, known but for a factor.
 constexpr int kSampleSize = 17;
 // Below this fraction of the largest, a pivot is zero by the structure of the rig or the motion.
-constexpr double kNegligible = 1e-10;
+constexpr double kZeroByStructure = 1e-10;
 
 // Columns of a tall matrix, reduced by Householder reflections; rows beyond kRows are folded into
 // the triangle of those before.
@@ -177,7 +177,7 @@ double SolveTranslation(const PreparedMatches& matches, const int* sample, int s
     a.at(row, 3) = n.dot(s);
   }
   int order[4];
-  const int rank = a.Reduce(0, 0, 3, kNegligible, order);
+  const int rank = a.Reduce(0, 0, 3, kZeroByStructure, order);
   if (rank < 2) return std::numeric_limits<double>::infinity();
   double residual2 = 0.0;
   for (int r = rank; r < a.rows(); ++r) residual2 += a.at(r, 3) * a.at(r, 3);
@@ -240,9 +240,9 @@ int Solve17ptLi(const PreparedMatches& matches, const int* sample, int sample_si
   }
   int order[18];
   // One centre in all: no scale.
-  const bool central = !(largest_moment > kNegligible * kNegligible);
-  const int rank_R = central ? 0 : a.Reduce(0, 0, 9, kNegligible, order);
-  if (a.Reduce(rank_R, 9, 18, kNegligible, order) < 8) return 0;
+  const bool central = !(largest_moment > kZeroByStructure * kZeroByStructure);
+  const int rank_R = central ? 0 : a.Reduce(0, 0, 9, kZeroByStructure, order);
+  if (a.Reduce(rank_R, 9, 18, kZeroByStructure, order) < 8) return 0;
   Eigen::Matrix3d E;
   if (!SmallestSingularVector(Triangle(a, rank_R), order, &E)) return 0;
 

@@ -13,7 +13,7 @@ namespace rigel {
 namespace {
 
 // Rank decisions on exact structure: rounding is far below, image noise far above.
-constexpr double kNegligible = 1e-10;
+constexpr double kZeroByStructure = 1e-10;
 // A motion of a millionth of the rig's size is no motion.
 constexpr double kNoMotion = 1e-6;
 // How far rounding moves the multiple root of a pure translation, radians.
@@ -50,8 +50,8 @@ SixPointSystem::SixPointSystem(const PreparedMatches& matches, const int* sample
   const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 6, 3>> qr(n);
   const auto& T = qr.matrixQR();
   const double largest = std::abs(T(0, 0));
-  solvable_ = largest > kNegligible && std::abs(T(1, 1)) > kNegligible * largest;
-  if (!solvable_ || std::abs(T(2, 2)) > kNegligible * largest) return;
+  solvable_ = largest > kZeroByStructure && std::abs(T(1, 1)) > kZeroByStructure * largest;
+  if (!solvable_ || std::abs(T(2, 2)) > kZeroByStructure * largest) return;
   pure_translation_ = true;
   Eigen::Vector3d v;
   v[2] = 1.0;
@@ -65,7 +65,7 @@ SixPointSystem::SixPointSystem(const PreparedMatches& matches, const int* sample
 void SixPointSystem::Add(const Eigen::Matrix3d& R, const Eigen::Vector4d& v) {
   Solution solution;
   solution.R = R;
-  solution.has_scale = std::abs(v[3]) > kNegligible * v.head<3>().norm();
+  solution.has_scale = std::abs(v[3]) > kZeroByStructure * v.head<3>().norm();
   if (solution.has_scale) {
     solution.t = v.head<3>() / v[3];
     double largest = 0.0;

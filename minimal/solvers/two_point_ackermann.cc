@@ -8,8 +8,10 @@
 namespace rigel {
 namespace {
 
-// Below this, relative to the rest, a quantity is rounding.
-constexpr double kNegligible = 1e-12;
+// Metres: coefficients of k that sum to less are rounding.
+constexpr double kZeroMoments = 1e-12;
+// Of |tau|, 1/m: a w below this is rounding, and tau is not determined.
+constexpr double kNoScale = 1e-12;
 
 // Two matches as tau e(z) + k(z) = 0, z = tan(a/2).
 class AckermannSample {
@@ -66,7 +68,7 @@ AckermannSample::AckermannSample(const PreparedMatches& matches, const int* samp
     k_[r][2] = deflated_ ? 0.0 : k2;
     k_size += std::abs(k_[r][0]) + std::abs(k_[r][1]) + std::abs(k_[r][2]);
   }
-  k_vanishes_ = k_size < kNegligible;
+  k_vanishes_ = k_size < kZeroMoments;
 }
 
 int AckermannSample::Roots(double* roots) const {
@@ -117,7 +119,7 @@ void AckermannSample::AddSolution(double z, Solutions* solutions) const {
   // R_y(a/2) f sqrt(1 + z^2).
   const Eigen::Vector3d chord(fx_ + z * fz_, 0.0, fz_ - z * fx_);
   const bool has_scale =
-      std::abs(w) > kNegligible * std::abs(tau) && (!deflated_ || std::abs(z) > kNoTurn);
+      std::abs(w) > kNoScale * std::abs(tau) && (!deflated_ || std::abs(z) > kNoTurn);
   const PreparedMatch& reference = m_[0]->parallax2 >= m_[1]->parallax2 ? *m_[0] : *m_[1];
   const Eigen::Vector3d t = has_scale ? chord * ((deflated_ ? z : 1.0) * tau * inverse / w)
                                       : UnitBaselineTranslation(reference, c, s, chord);

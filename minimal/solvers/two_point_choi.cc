@@ -6,6 +6,14 @@
 #include "rigel/minimal/solvers/baseline.h"
 
 namespace rigel {
+namespace {
+
+// Relative to the squared determinant: below it p, q and r are what rounding left of zeros.
+constexpr double kNoMotion = 1e-14;
+// Relative to the terms of the discriminant: a few roundings.
+constexpr double kDiscriminantRounding = 1e-15;
+
+}  // namespace
 
 int Solve2ptChoi(const PreparedMatches& matches, const int* sample, Solutions* solutions) {
   solutions->clear();
@@ -33,10 +41,10 @@ int Solve2ptChoi(const PreparedMatches& matches, const int* sample, Solutions* s
   const double r = N[1] * N[1] + N[3] * N[3] - det2;
   // p u0^2 + 2 q u0 u1 + r u1^2 = 0. All three vanish if nothing moves.
   const double scale = std::abs(p) + std::abs(q) + std::abs(r);
-  if (!(scale > 1e-14 * det2)) return 0;
+  if (!(scale > kNoMotion * det2)) return 0;
   const double discriminant = q * q - p * r;
   // A tangent line survives the rounding of its discriminant.
-  if (!(discriminant >= -1e-15 * scale * scale)) return 0;
+  if (!(discriminant >= -kDiscriminantRounding * scale * scale)) return 0;
   const double root = std::sqrt(std::max(discriminant, 0.0));
   const double h = q >= 0 ? -q - root : -q + root;
 

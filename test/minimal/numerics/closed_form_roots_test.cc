@@ -122,6 +122,43 @@ void CompareDeterminants(const Setting& setting, int num_cameras, PriorKind prio
   }
 }
 
+// Coefficients, ascending, of the polynomial of degree n through f at the Chebyshev nodes of [0,
+// 1].
+std::vector<long double> ChebyshevInterpolation(int n, long double (*f)(long double)) {
+  std::vector<long double> nodes(n + 1), difference(n + 1), c(n + 1, 0.0L);
+  for (int k = 0; k <= n; ++k) {
+    nodes[k] = 0.5L + 0.5L * std::cos(std::acos(-1.0L) * (2 * k + 1) / (2 * n + 2));
+    difference[k] = f(nodes[k]);
+  }
+  // Newton's form, by divided differences, and then the powers of u.
+  for (int j = 1; j <= n; ++j) {
+    for (int k = n; k >= j; --k) {
+      difference[k] = (difference[k] - difference[k - 1]) / (nodes[k] - nodes[k - j]);
+    }
+  }
+  for (int k = n; k >= 0; --k) {
+    for (int i = n; i > 0; --i) c[i] = c[i - 1] - nodes[k] * c[i];
+    c[0] = difference[k] - nodes[k] * c[0];
+  }
+  return c;
+}
+
+// The generator of the coefficients. They were made in double precision.
+TEST(ClosedFormRoots, ChebyshevCoefficients) {
+  const auto cosine = [](long double u) { return std::cos(2.0L / 3.0L * std::acos(u)); };
+  const auto sine = [](long double u) {
+    return std::sin(2.0L / 3.0L * std::acos(u)) / std::sqrt((1.0L - u) * (1.0L + u));
+  };
+  const std::vector<long double> c = ChebyshevInterpolation(8, cosine);
+  const std::vector<long double> s = ChebyshevInterpolation(9, sine);
+  for (int k = 0; k <= 8; ++k) {
+    EXPECT_NEAR(polynomial_internal::kCosineOfThird[k], static_cast<double>(c[k]), 1e-9) << k;
+  }
+  for (int k = 0; k <= 9; ++k) {
+    EXPECT_NEAR(polynomial_internal::kSineOfThird[k], static_cast<double>(s[k]), 1e-9) << k;
+  }
+}
+
 TEST(ClosedFormRoots, LoseNoRootOfTheSolversDeterminants) {
   for (const double rotation_deg : {0.0, 0.05, 1.0, 5.0, 30.0}) {
     Tally tally4, tally5, tally6;
