@@ -216,7 +216,8 @@ RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches
 Eigen::Vector3d FittedPoint(const RefineOptions& options, const MotionPrior& prior, const Rig& rig);
 
 // Internal: Refine() for `matches` whose body frame has its origin at the point `origin` of the
-// body. `pose` and the summary are of the body. If `origin` is the rig's centre, the matches are not copied.
+// body. `pose` and the summary are of the body. If `origin` is the rig's centre, the matches are
+// not copied.
 RefineSummary RefineAbout(const RefineOptions& options, const GroupedMatches& matches,
                           const Eigen::Vector3d& origin, const MotionPrior& prior, Pose* pose);
 
