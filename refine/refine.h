@@ -34,8 +34,8 @@ class GroupedMatches;
 
 // Which parameters are free. Every form uses the exact rotation.
 enum class RefineForm {
-  kFull,         // rotation (3), translation (3; 2 on the sphere if scale is not observable)
-  kPrior,        // the prior is exact: the angle about its direction, and t (planar: in the plane)
+  kFull,   // rotation (3), translation (3; 2 on the sphere if scale is not observable)
+  kPrior,  // the prior is exact: the angle about its direction, and t (planar: in the plane)
   // Rotation (3), depths l1, l2 of a reference match, which is exact (paper eqs. a2, a5).
   kDepths,
   kPriorDepths,  // the angle, l1 and l2 (planar: one depth less): the paper's model
