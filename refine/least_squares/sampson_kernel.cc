@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "rigel/core/kernel_lanes.h"
 #include "rigel/core/sampson_terms.h"
 
 // Plain loops and sums of vectors of a fixed width, see cpu_path.h.
