@@ -34,7 +34,8 @@ struct Alignment {
 
   // A2' t: the translation t of the aligned frames in f2.
   Eigen::Vector3d ToFrame2(const Eigen::Vector3d& t) const {
-    // By components, as a vector written by them cannot be read back whole without waiting.
+    // By components: if t was stored one component at a time, a load of the whole vector would have
+    // to wait until these stores are done.
     return t.x() * A2.row(0).transpose() + t.y() * A2.row(1).transpose() +
            t.z() * A2.row(2).transpose();
   }
@@ -50,8 +51,8 @@ struct Alignment {
 // kVertical: A1 takes gravity1 to Y and A2 = A1 M with M the smallest rotation that takes gravity2
 // to gravity1, so that a = 0 is the smallest rotation which the prior allows. kAxis and kPlanar:
 // A1 = A2 = A with A n = Y. kNone: identities. False with a message if `prior` lacks what `kind`
-// needs, or a direction is not a finite unit vector (to 1e-3; it is normalized). Of the prior's
-// forward direction only the planar solvers make use, it is never needed here.
+// needs, or a direction is not a finite unit vector (to 1e-3; it is normalized). The prior's
+// forward direction is used with kPlanar only, and may be absent.
 bool MakeAlignment(const MotionPrior& prior, PriorKind kind, Alignment* alignment,
                    std::string* error);
 

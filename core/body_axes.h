@@ -21,15 +21,15 @@ struct BodyAxes {
   Eigen::Vector3d Right() const { return down.cross(forward); }
 };
 
-// The axes as far as they are stated, for the rest those that the cameras of the rig suggest:
-//   down     the body axis (+x, -x, ... -z) nearest to the mean of the cameras' down directions, a
-//            stated forward direction's own axis left out
-//   forward  among the body axes across `down` the one nearest to the mean of the cameras' optical
-//            axes, where that is longer than half: they look the same way. Cameras all round have
-//            no mean: then +x where down is -z, +z where down is +y, as nearly all such bodies
-//            have it, else the axis nearest to the first camera's optical axis.
-// A stated `forward` is taken across `down`. False with a message if both are stated and within 30
-// degrees of one line. A rig without cameras: y down, z forward.
+// The axes that are stated. Those that are not stated come from the cameras of the rig:
+//   down     the body axis (+x, -x, ... -z) nearest to the mean of the cameras' down directions. If
+//            `forward` is stated, the axis nearest to it is left out.
+//   forward  a body axis perpendicular to `down`. If the cameras look about the same way (the mean
+//            of their optical axes is longer than 0.5), the one nearest to that mean. Else, as for
+//            cameras all round, +x if down is -z and +z if down is +y, as most such bodies have it.
+//            In all other cases the one nearest to the first camera's optical axis.
+// Of a stated `forward` the part perpendicular to `down` is taken. False with a message if both are
+// stated and within 30 degrees of one line. A rig without cameras: y down, z forward.
 bool ResolveBodyAxes(const Rig& rig, const std::optional<Eigen::Vector3d>& down,
                      const std::optional<Eigen::Vector3d>& forward, BodyAxes* axes,
                      std::string* error);

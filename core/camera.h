@@ -10,7 +10,9 @@ namespace rigel {
 
 // pixel = (fx x + cx, fy y + cy) for the normalized image point u = (x, y, 1); +z forward, +x
 // right, +y down. Focal lengths and the principal point in pixels, the same origin as the
-// pixels of the matches. width and height are informative: undistorted pixels may lie outside.
+// pixels of the matches. Undistorted pixels may lie outside width and height. These two tell how
+// often random matches would fit a motion (EstimateStatus::kNoConsensus). If they are 0, the size
+// is guessed from the principal point and the focal length, and from the matches.
 struct PinholeCamera {
   double fx = 1.0;
   double fy = 1.0;

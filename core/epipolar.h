@@ -61,8 +61,8 @@ Eigen::Vector3d CentredPixel(const PinholeCamera& camera, const Pixel& pixel);
 // It is the distance of the match from the nearest exact match to first order, it does not
 // change when F is scaled (so it cannot gain by shrinking the motion), and:
 //   at the epipoles (the gradient is zero but F is not) it is 0, its limit;
-//   at F = 0, where every match fits, it is infinite: a motion that says nothing about a
-//   camera pair must not win matches of it.
+//   at F = 0, where every match fits, it is infinite: a motion that gives a camera pair no
+//   baseline must not count all matches of this pair as inliers.
 double SampsonError(const Eigen::Matrix3d& F, const Eigen::Vector3d& p_i,
                     const Eigen::Vector3d& p_j);
 

@@ -21,7 +21,9 @@ struct FramePair {
   MotionPrior prior;
   std::optional<double> time1, time2;  // seconds
   std::optional<Pose> truth;           // f2_from_f1
-  std::optional<double> noise_px;      // 1-sigma image noise where it is known
+  // 1-sigma image noise if it is known. The programs use it. EstimateMotion() does not read it: set
+  // options.refine.noise_px = pair.noise_px.
+  std::optional<double> noise_px;
 
   // False with a message if the rig or the prior is invalid, a match names a camera that is not
   // there, a pixel or time is not finite, the truth is no finite motion or noise_px is not

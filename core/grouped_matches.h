@@ -42,8 +42,9 @@ class GroupedMatches {
   // At most `count` of the matches, evenly over their order: enough to tell a good motion from a
   // bad one. original() is then the position in the subset.
   GroupedMatches EvenSubset(size_t count) const;
-  // The same, but one drawn from each of as many stretches of the order, where it must not matter
-  // that kinds of matches alternate. Always the same draw.
+  // The same number, but drawn at random: the order is cut into `count` parts of the same size, and
+  // one match is drawn from each. For matches whose kinds alternate: EvenSubset() could take one
+  // kind only. The draw is the same in each call.
   GroupedMatches DrawnSubset(size_t count) const;
 
   // Q diag(1 / fx, 1 / fy, 1): centred pixels, with 1 as third coordinate, to directions.
@@ -69,9 +70,9 @@ class GroupedMatches {
   // `num_inliers` may be null: counting takes time.
   double Score(const Pose& pose, double threshold_px, double bound, int* num_inliers) const;
 
-  // The same where a match that lies behind a camera counts as an outlier too. An outlier far from
-  // where its point could be has much leverage, and half of those that an estimate could bend
-  // to would lie behind a camera. Never below Score(), to the last bit.
+  // The same, but a match whose point lies behind a camera counts as an outlier too. An outlier
+  // with a large leverage can pull the motion until it fits. About half of these would then lie
+  // behind a camera. Never below Score(), to the last bit.
   double ScoreInFront(const Pose& pose, double threshold_px, double bound, int* num_inliers) const;
 
   // 1 for matches of a Sampson error below the threshold that do not lie behind a camera, else 0,
@@ -83,7 +84,8 @@ class GroupedMatches {
   // The rays of the match at grouped position k in the body frames.
   RayPair rays(int k) const;
 
-  // A sine of parallax in the match's group that noise of this threshold cannot make.
+  // The sine of the parallax above which depths of the group are decided: noise of this threshold
+  // cannot cause a larger one.
   double DecidedParallax(const MatchGroup& group, double threshold_px) const;
 
   // Squared Sampson errors in grouped order, pixels^2; `errors` is resized.

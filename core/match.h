@@ -7,8 +7,9 @@
 namespace rigel {
 
 // One landmark seen by camera i = camera1 at time 1 and by camera j = camera2 at time 2.
-// Pixels are undistorted. `score` is the matcher's confidence, lower is better (Lowe's ratio);
-// 0 if unknown.
+// Pixels are undistorted. `score` says how good the match is; lower is better, as for Lowe's ratio.
+// RANSAC draws from the lowest first. If the scores are unknown, all are alike, such as 0. Among
+// other scores 0 is not unknown but the best, and NaN is the worst.
 struct Match {
   int camera1 = 0;
   Pixel pixel1 = Pixel::Zero();

@@ -1,8 +1,8 @@
-// What is meant in pixels, where pixels may be of any size.
+// Thresholds and noise levels in pixels, for cameras of any focal length.
 //
-// Cameras of a few hundred pixels of focal length are what defaults in pixels are made for. With
-// normalised image coordinates (fx = 1) or small images a pixel is a larger angle, and such a
-// default is a share of the focal length instead.
+// Defaults in pixels are made for focal lengths of a few hundred pixels. With normalized image
+// coordinates (fx = 1) or small images a pixel is a larger angle. There a default is a fraction of
+// the focal length.
 #ifndef RIGEL_CORE_PIXEL_UNIT_H_
 #define RIGEL_CORE_PIXEL_UNIT_H_
 
@@ -10,7 +10,7 @@
 
 namespace rigel {
 
-// As a threshold: DefaultThresholdPx().
+// This value of a threshold stands for DefaultThresholdPx().
 inline constexpr double kAutoThresholdPx = 0.0;
 
 // One, or 1/450 of the shortest focal length of the rig where that is less.

@@ -1,10 +1,10 @@
 // The motion of another point of the body than its origin.
 //
-// The body's origin is the user's: an axle, an IMU, a map's. With a long lever from it to the
-// cameras t says little but how the lever turns. Estimates are therefore made of the motion of the
-// rig's centre c, f2_from_f1 with both origins moved to c:
+// The user chooses the body's origin: an axle, an IMU, the origin of a map. If it is far from the
+// cameras, t comes mostly from the rotation about it. So the estimate is of the motion of the rig's
+// centre c, which is f2_from_f1 with both origins moved to c:
 //   b = R c + t - c,   t = b + c - R c
-// and told as the motion of the body. Axes stay.
+// The result is stated as the motion of the body. The directions of the axes do not change.
 #ifndef RIGEL_CORE_RIG_CENTRE_H_
 #define RIGEL_CORE_RIG_CENTRE_H_
 

@@ -9,8 +9,8 @@
 
 namespace rigel {
 
-// The arrays below are read beyond their last element up to a multiple of this: memory of the
-// caller's, of any content. Whole vectors only, and no copy of the last few.
+// The kernels read whole vectors. So they read the arrays below beyond the last element, up to a
+// multiple of this number. The caller must own that memory; its content does not matter.
 inline constexpr int kKernelPadding = 8;
 
 // Matches of one camera pair in centred pixels (epipolar.h): (x1, y1) at time 1, (x2, y2) at

@@ -14,15 +14,15 @@ struct Statistics {
   double p90 = 0.0;
 };
 
-// Half the distance of the quartiles: the spread of times, which outliers do not move. 0 for fewer
-// than four values.
+// Half the distance between the two quartiles: the spread of times, which a few outliers hardly
+// change. 0 for fewer than four values.
 double QuartileDistance(std::vector<double> values);
 
 // Nothing for an empty list. Numbers that are not finite must not be passed. The median of an even
 // count is the mean of the middle two; p90 is interpolated linearly.
 std::optional<Statistics> ComputeStatistics(std::vector<double> values);
 
-// Nothing for nothing.
+// The median; nullopt if there are no statistics.
 inline std::optional<double> MedianOf(const std::optional<Statistics>& statistics) {
   return statistics ? std::optional<double>(statistics->median) : std::nullopt;
 }

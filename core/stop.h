@@ -20,8 +20,8 @@ const char* StopReasonName(StopReason reason);  // "none", "time limit", "cancel
 // A limit that makes sense: none, or finite and not negative. False with a message if not.
 bool IsValidTimeLimit(const std::optional<double>& time_limit, std::string* error);
 
-// Asked again and again by what it may stop. Once the answer was yes it stays yes; with neither a
-// limit nor a flag it costs nothing.
+// A long computation calls Asked() again and again, and ends if it returns true. From then on it
+// returns true always. Without a limit and a flag it is always false, and takes hardly any time.
 class Stop {
  public:
   Stop() = default;

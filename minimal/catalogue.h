@@ -38,7 +38,8 @@ struct SolverInfo {
   SampleKind sampling;
   SolveFunction solve;
   const char* source;  // one line: publication and equations
-  // About what a sample takes on one core of 2020, where that is much: RansacOptions::max_work_us.
+  // About the time of one call in microseconds, on one core of 2020. RansacOptions::max_work_us
+  // limits the sum. Given for the slow solvers.
   double nominal_us = 1.0;
 };
 

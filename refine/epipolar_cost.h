@@ -41,7 +41,8 @@
 // - Intra-camera matches alone hardly determine the length of t_21 (docs/conventions.md). Hold it
 //   by other residuals or by a manifold.
 // - Refine() gives matches near an epipole a smaller weight (EpipoleWeights() of
-//   refine/least_squares/uncertainty.h). For the same effect pass sigma_px / weight as sigma_px.
+//   refine/least_squares/uncertainty.h, which is not installed): one half at a distance of 14 sigma
+//   from both epipoles. For the same effect pass sigma_px / weight as sigma_px.
 //
 // Errors: a factory returns null if sigma_px is not within 1e-12 and 1e12, the rig is not valid
 // (Rig::IsValid), the match names a camera that is not there, a pixel is not finite or `order` is

@@ -3,6 +3,9 @@
 // In turns it minimizes the errors and selects the inliers again. The sign of t comes from
 // cheirality (points lie in front of their cameras). The summary has the covariance and what is
 // observable. Motions are f2_from_f1, X_2 = R X_1 + t, in radians and metres.
+//
+// GroupedMatches and functions that take it are internal: its header is not installed. So are
+// headers that the comments below name and docs/api.md does not list.
 #ifndef RIGEL_REFINE_REFINE_H_
 #define RIGEL_REFINE_REFINE_H_
 
@@ -33,7 +36,8 @@ class GroupedMatches;
 enum class RefineForm {
   kFull,         // rotation (3), translation (3; 2 on the sphere if scale is not observable)
   kPrior,        // the prior is exact: the angle about its direction, and t (planar: in the plane)
-  kDepths,       // rotation (3), depths l1, l2 of a reference match, which is exact (eqs. a2, a5)
+  // Rotation (3), depths l1, l2 of a reference match, which is exact (paper eqs. a2, a5).
+  kDepths,
   kPriorDepths,  // the angle, l1 and l2 (planar: one depth less): the paper's model
   kBundle,       // as kFull, and the point of each inlier; reprojection errors, not `residual`
 };
@@ -201,17 +205,19 @@ static_assert(kSameLayoutEverywhere<RefineSummary>, "no member of RefineSummary 
 // Refines `pose` (f2_from_f1 of the body, metres), which must be near the true motion. `pose` must
 // not be null. Never throws, exits or logs. On kDegenerate and kFailure `pose` is unchanged and the
 // summary has a message. Thread-safe; deterministic unless stopped.
-RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,
-                     const MotionPrior& prior, Pose* pose);
 RefineSummary Refine(const RefineOptions& options, const Rig& rig,
                      const std::vector<Match>& matches, const MotionPrior& prior, Pose* pose);
+// Internal: the same for matches that are grouped already.
+RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,
+                     const MotionPrior& prior, Pose* pose);
 
 // The point of the body whose motion b a refinement fits (rig_centre.h), in the body frame, metres:
 // the rig's centre, or the body's origin if the options hold |t| or weight the prior's distance.
 Eigen::Vector3d FittedPoint(const RefineOptions& options, const MotionPrior& prior, const Rig& rig);
 
-// Refine() for `matches` whose body frame has its origin at the point `origin` of the body. `pose`
-// and the summary are of the body. If `origin` is the rig's centre, the matches are not copied.
+// Internal: Refine() for `matches` whose body frame has its origin at the point `origin` of the
+// body. `pose` and the summary are of the body. If `origin` is the rig's centre, the matches are
+// not copied.
 RefineSummary RefineAbout(const RefineOptions& options, const GroupedMatches& matches,
                           const Eigen::Vector3d& origin, const MotionPrior& prior, Pose* pose);
 

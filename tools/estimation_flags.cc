@@ -64,7 +64,8 @@ DEFINE_bool(estimate_noise, false,
             "estimate the image noise from the residuals, even if the file states it");
 DEFINE_string(
     residual, "sampson",
-    "residual of the refinement: sampson (pixels), angular (radians) or algebraic (metres). "
+    "residual of the refinement: sampson (pixels), angular (angle on the viewing sphere times the "
+    "mean focal length: pixels at the image centre) or algebraic (metres). "
     "algebraic is for comparison only: it is not robust, and it tends to zero motion if all "
     "matches are intra-camera and the scale is free");
 DEFINE_string(loss, "cauchy",

@@ -28,18 +28,18 @@ struct InputFiles {
   std::vector<std::string> paths;
   std::vector<std::string> all;  // those of all shards
   int first = 0;                 // position of paths[0] in `all`
-  bool all_there = true;         // false: something was not, which was told on stderr
+  bool all_there = true;         // false if a path of --matches was not found; stderr says which
   std::optional<Shard> shard;
 };
 
 // Whether stdin, "-", is among --matches.
 bool ReadsStdin();
 
-// Lists --matches. Returns an exit code, with a message on stderr unless it is kExitDone: there is
-// no file at all, or an output would destroy an input.
+// Lists the files of --matches. Returns an exit code. If there is no file at all, or an output
+// would overwrite an input, it is not kExitDone, and stderr has a message.
 int ListInput(const std::vector<OutputFlag>& outputs, InputFiles* input);
 
-// The flags that say what is written where, or by how many threads: no options of a result.
+// The flags that do not change results: they say what is written where, and how many threads run.
 std::vector<std::string> OutputFlags();
 
 // Whether times are part of the results: not with --no_times.

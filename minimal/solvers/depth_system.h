@@ -1,4 +1,6 @@
-// The depth system F(a) (d1, d2, w)' = 0 that all solvers of the paper's family share.
+// The depth system F(a) (d1, d2, w)' = 0 that the three solvers of the paper share with their
+// polished and exact forms. It is homogeneous: w is a common factor, and the depths are d1 / w and
+// d2 / w. Below they are written for w = 1. Rows and columns of F are counted from 0.
 //
 // One match of the sample is the reference. Its point is at s_i + d1 x1 in f1 and at s_j + d2 x2
 // in f2 (distances from the camera centres; the paper's l1, l2 of eq. a5 count from the feet of
@@ -12,13 +14,13 @@
 //   first order  z = a, cos a = 1, sin a = a: entries of degree 1 (paper eq. d1_1)
 //   exact        z = tan(a/2), the row multiplied by 1 + z^2: entries of degree 2
 //
-// Deflation. If all matches of the sample are intra-camera and R = I is in the family, the zero
-// motion R = I, t = 0 satisfies the sample whatever the matches are: column 3 vanishes at a = 0.
+// Deflation. If all matches of the sample are intra-camera and the prior allows R = I, the zero
+// motion R = I, t = 0 satisfies the sample whatever the matches are: column 2 vanishes at a = 0.
 // It is divided by z, and the unknowns become (d1, d2, w'), w' = z w. One factor of det F goes;
 // a root that remains at 0 is true pure translation, with a direction and no scale.
 //
 // Central samples. If all camera centres of the sample coincide, or differ along Y only (SameArm),
-// column 3 vanishes altogether: |t| is not determined, one match is not needed, and the determinant
+// column 2 vanishes altogether: |t| is not determined, one match is not needed, and the determinant
 // is that of two rows.
 #ifndef RIGEL_MINIMAL_SOLVERS_DEPTH_SYSTEM_H_
 #define RIGEL_MINIMAL_SOLVERS_DEPTH_SYSTEM_H_

@@ -63,9 +63,9 @@ class PreparedMatches {
   PreparedMatches() = default;
   PreparedMatches(const Rig& rig, const std::vector<Match>& matches, const Alignment& alignment);
 
-  // In grouped order, for RANSAC, which may draw few of them: match k may be looked at once
-  // Prepare() was told of it, and what is never drawn takes no memory. `matches` must outlive the
-  // result.
+  // Internal. The matches in grouped order, for RANSAC, which may draw only few of them. Match k
+  // may be read only after Prepare() was called with it. A match that is never drawn takes hardly
+  // any memory. `matches` must outlive the result.
   static PreparedMatches OnDemand(const GroupedMatches& matches, const Alignment& alignment);
 
   // To be called before a sample of OnDemand() is solved; others are ready. No heap.

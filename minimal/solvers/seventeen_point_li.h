@@ -22,7 +22,8 @@
 // seen by intra-camera matches have no scale: has_scale is false. Returns nothing where E is not
 // determined: no motion at all; and R = I exactly with two cameras and inter-camera matches only.
 //
-// Units: t in metres. No rank decision depends on image noise: all zeros are the rig's.
+// Units: t in metres. The ranks do not depend on image noise: a pivot counts as zero only if the
+// rig makes it zero up to rounding.
 #ifndef RIGEL_MINIMAL_SOLVERS_SEVENTEEN_POINT_LI_H_
 #define RIGEL_MINIMAL_SOLVERS_SEVENTEEN_POINT_LI_H_
 

@@ -7,11 +7,12 @@
 
 namespace rigel {
 
-// Iterations: weights may alternate without an end, and a fit has to.
+// Largest number of iterations: the weights may alternate without end.
 inline constexpr int kMaxFitIterations = 50;
 // The step that ends a fit, radians: far below what motions can determine.
 inline constexpr double kConvergedRadians = 1e-12;
-// Radians. Motions without noise have residuals of rounding only, of which no weights can be made.
+// Least spread of residuals, radians. Without noise the residuals are rounding errors, and weights
+// by their spread would mean nothing.
 inline constexpr double kMinSpread = 1e-7;
 
 // 1-sigma of normally distributed residuals, by their median; at least kMinSpread.
@@ -20,8 +21,8 @@ double RobustSpread(std::vector<double> residuals);
 // The weight of Cauchy's loss, 95 percent efficient on normal residuals.
 double CauchyWeight(double residual, double spread);
 
-// n / (n - parameters): what the residuals of n motions lack because parameters were fitted to
-// them.
+// n / (n - parameters), the factor that corrects a variance: residuals of n motions are too small
+// because parameters were fitted to them. 1 if n <= parameters.
 double SmallSampleFactor(int n, int parameters);
 
 // Whether a standard deviation, radians, is at most kMaxCalibrationSigmaDeg. False if negative.
@@ -30,7 +31,8 @@ bool IsDetermined(double sigma);
 // "12.3 degrees".
 std::string DegreesText(double radians);
 
-// ", farther than the 30 that are believed".
+// ", farther than the 30 that are believed": degrees, for messages that say how far a direction is
+// from the expected one.
 std::string TooFarText();
 
 // "0.2 and 3.4 degrees, at most 1.0 is asked". A sigma that is negative or not finite is left out.

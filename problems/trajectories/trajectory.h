@@ -22,25 +22,28 @@ inline constexpr double kSameTimeShare = 0.1;
 // An estimated |t| counts as a length up to this relative standard deviation.
 inline constexpr double kRoughScaleRatio = 0.5;
 
-// The matches say that the rig stands still, to within kStillMetres, and no distance is stated that
-// contradicts.
+// True if the matches say that the rig moved by less than kStillMetres, and the pair states no
+// distance that contradicts this.
 inline constexpr double kStillMetres = 1e-2;
 bool StandsStill(const FramePair& pair, const RefineSummary& refine);
 
-// The motion with this rotation and the rig's centre at rest: t = 0 where the body's origin is it.
+// The motion with the rotation of `pose` that leaves the rig's centre where it is. If the centre is
+// the body's origin, t = 0.
 Pose Standing(const Pose& pose, const RefineSummary& refine);
 
-// Why pair k, k > 0, does not start where pair k - 1 ended; empty if it does: a pair is missing
-// between them (by `positions`, see below), another sequence, or another time. What a pair does not
-// state does not part it from the other.
+// Why pair k, k > 0, does not start where pair k - 1 ended; empty if it does. There are three
+// reasons: a pair is missing between them (by `positions`, see ChainMotions()), they are of
+// different sequences, or pair k starts at another time than pair k - 1 ends. If a time is not
+// stated, the times are not compared.
 std::string WhyNotNext(const std::vector<FramePair>& pairs, const std::vector<int>& positions,
                        size_t k);
 
-// Pairs first_pair to first_pair + NumPairs() - 1; all poses that exist go together.
+// The poses of the pairs first_pair to first_pair + NumPairs() - 1. Element k of each list that is
+// not empty belongs to the same frame.
 struct Trajectory {
   std::string sequence;
   size_t first_pair = 0;
-  std::vector<double> times;   // seconds, one a pose, ascending; empty where the pairs' are not so
+  std::vector<double> times;   // seconds, one a pose; empty if they are missing or not ascending
   std::vector<Pose> estimate;  // of MotionEstimate::pose: refined where that was asked for
   std::vector<Pose> raw;       // of MotionEstimate::raw
   std::vector<Pose> truth;     // empty unless all of its pairs have one

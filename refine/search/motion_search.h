@@ -23,8 +23,8 @@ struct MotionSearch {
   std::vector<SolverTrial> trials;  // in the order of the solvers
 };
 
-// `solvers`: at least one, the most constrained first; `prior` must have what each needs. The best
-// score wins. With several solvers the search has these steps:
+// `solvers`: at least one, the most constrained first; `prior` must have what each needs. With
+// several solvers the search has these steps:
 // - The first constrained solver makes kFirstIterations.
 // - If its motion is doubtful (doubt.h), those that need no prior make kProbeIterations each, then
 //   the other constrained ones. Solvers after 5pt+1 are used only if most matches are of camera
@@ -33,6 +33,9 @@ struct MotionSearch {
 // - If there is none, the best constrained solver and those without a prior take turns. They stop
 //   when the best one has drawn a sample of inliers with the confidence of the options, and no
 //   doubt but few inliers is left.
+// The motion of the best score is the result, with one exception. If it deviates from its solver's
+// prior, and a solver without a prior has a score at most 2 percent worse, the result is the motion
+// of that solver.
 // All together make at most options.max_iterations and options.max_work_us. `stop` is asked before
 // each iteration.
 inline constexpr int kFirstIterations = 50;  // enough to see that a prior is right
