@@ -22,9 +22,9 @@ namespace fs = std::filesystem;
 // The lines that are calibrated.
 std::vector<std::string> Names(const CalibratedLines& lines) {
   std::vector<std::string> names;
-  if (lines.normal) names.push_back("normal");
-  if (lines.axis) names.push_back("axis");
-  if (lines.gravity) names.push_back("gravity");
+  if (lines.normal) names.emplace_back("normal");
+  if (lines.axis) names.emplace_back("axis");
+  if (lines.gravity) names.emplace_back("gravity");
   return names;
 }
 

@@ -189,7 +189,7 @@ bool CheckRefinement(const EstimateOptions& estimate, std::string* error) {
 }
 
 bool ReadRefinementFlags(EstimateOptions* estimate, std::string* error) {
-  RefineOptions& refine = estimate->refine;
+  RefineSettings& refine = estimate->refine;
   estimate->refine_motion = FLAGS_refine != "none";
   if (estimate->refine_motion && !ParseRefineForm(FLAGS_refine, &refine.form)) {
     return WrongValue("refine", FLAGS_refine, "none, full, prior, depths, prior-depths or bundle",

@@ -78,7 +78,7 @@ std::string FlagFilesError(int argc, char** argv) {
     const bool next = equals == std::string::npos;
     if (next && k + 1 == argc) return "";  // no value: gflags tells it
     for (const std::string& part : SplitCommas(next ? argv[k + 1] : argument.substr(equals + 1))) {
-      const std::string error =
+      std::string error =
           name == "flagfile" ? FlagFileError(part)
           : part == "flagfile"
               ? "--" + name + "=flagfile: a flag file is only taken from the command line"

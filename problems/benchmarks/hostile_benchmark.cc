@@ -25,8 +25,8 @@ constexpr int kHuge = 200000;
 std::vector<std::string> SolversOf(const HostileBenchmarkOptions& options) {
   if (!options.solvers.empty()) return options.solvers;
   std::vector<std::string> solvers;
-  for (const SolverInfo& solver : SolverCatalogue()) solvers.push_back(solver.name);
-  solvers.push_back(kAutoSolver);
+  for (const SolverInfo& solver : SolverCatalogue()) solvers.emplace_back(solver.name);
+  solvers.emplace_back(kAutoSolver);
   return solvers;
 }
 

@@ -86,7 +86,7 @@ std::string DriftTable(const EstimateReport& report) {
         std::to_string(k) +
         (trajectory.sequence.empty() ? "" : " (" + Shortened(trajectory.sequence, 12) + ")");
     const auto add = [&](const char* motions, const std::vector<Pose>& poses) {
-      const Drift drift = ComputeDrift(trajectory.truth, poses);
+      Drift drift = ComputeDrift(trajectory.truth, poses);
       const bool segments = !drift.by_length.empty();
       const auto some = [&](double value) {
         return segments ? FormatFitted(value, 3, 7) : std::string("-");

@@ -104,7 +104,8 @@ std::vector<std::string> Wrapped(const std::string& name, size_t width) {
   for (const char c : name + "-") {
     part += c;
     if (c != '-') continue;
-    if (!lines.back().empty() && lines.back().size() + part.size() > width + 1) lines.push_back("");
+    if (!lines.back().empty() && lines.back().size() + part.size() > width + 1)
+      lines.emplace_back();
     lines.back() += part;
     part.clear();
   }

@@ -90,7 +90,7 @@ void AddHeads(const ExperimentSpec& spec, bool driven, Table* table) {
   for (size_t line = 0; line < depth; ++line) {
     const bool last = line + 1 == depth;
     std::vector<std::string> cells = {last ? (driven ? "drive" : "motion") : ""};
-    if (!driven) cells.push_back(last ? "x" : "");
+    if (!driven) cells.emplace_back(last ? "x" : "");
     for (const auto& head : heads) {
       const size_t skip = depth - head.size();
       cells.push_back(line >= skip ? head[line - skip] : "");

@@ -8,7 +8,7 @@
 namespace rigel {
 
 std::string CsvText(std::string_view text) {
-  const std::string cell = Printable(text);
+  std::string cell = Printable(text);
   if (cell.find_first_of(",\"") == std::string::npos) return cell;
   std::string quoted = "\"";
   for (const char c : cell) {

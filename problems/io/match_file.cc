@@ -20,7 +20,7 @@
 namespace rigel {
 namespace {
 
-using namespace match_file;
+using namespace match_file;  // NOLINT(google-build-using-namespace): the words that this file reads
 
 constexpr std::string_view kSuffix = ".matches";
 constexpr std::string_view kCompressed = ".gz";

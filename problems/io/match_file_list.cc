@@ -50,7 +50,7 @@ void MatchFileList::Add(const std::string& item) {
   namespace fs = std::filesystem;
   if (item == "-") {
     if (has_stdin) {
-      errors.push_back("-: named twice, expected once: stdin can be read but once");
+      errors.emplace_back("-: named twice, expected once: stdin can be read but once");
     } else {
       paths.push_back(item);
     }

@@ -3,6 +3,7 @@
 // Not <cmath>: its inline functions could be shared with code for other processors.
 #include <math.h>  // NOLINT(modernize-deprecated-headers)
 
+#include "rigel/core/kernel_lanes.h"
 #include "rigel/core/sampson_terms.h"
 
 // Plain loops and sums of vectors of a fixed width, see cpu_path.h.
