@@ -4,8 +4,7 @@
 // cheirality (points lie in front of their cameras). The summary has the covariance and what is
 // observable. Motions are f2_from_f1, X_2 = R X_1 + t, in radians and metres.
 //
-// GroupedMatches and functions that take it are internal: its header is not installed. So are
-// headers that the comments below name and docs/api.md does not list.
+// GroupedMatches and the functions that take it are internal: its header is not installed.
 #ifndef RIGEL_REFINE_REFINE_H_
 #define RIGEL_REFINE_REFINE_H_
 
