@@ -34,7 +34,7 @@ struct Alignment {
 
   // A2' t: the translation t of the aligned frames in f2.
   Eigen::Vector3d ToFrame2(const Eigen::Vector3d& t) const {
-    // By components, as a vector written by them cannot be read back whole without waiting.
+    // By components: to read a vector right after its parts were written makes the processor wait.
     return t.x() * A2.row(0).transpose() + t.y() * A2.row(1).transpose() +
            t.z() * A2.row(2).transpose();
   }

@@ -39,11 +39,11 @@ class GroupedMatches {
   // In grouped order; within a group in the order of the input.
   const std::vector<Match>& matches() const { return matches_; }
 
-  // At most `count` of the matches, evenly over their order: enough to tell a good motion from a
-  // bad one. original() is then the position in the subset.
+  // At most `count` of the matches, evenly spaced in their order. original() is then the position
+  // in the subset.
   GroupedMatches EvenSubset(size_t count) const;
-  // The same, but one drawn from each of as many stretches of the order, where it must not matter
-  // that kinds of matches alternate. Always the same draw.
+  // The same, but the order is cut into `count` stretches and one match is drawn from each. So it
+  // does not matter if kinds of matches alternate. The draw is always the same.
   GroupedMatches DrawnSubset(size_t count) const;
 
   // Q diag(1 / fx, 1 / fy, 1): centred pixels, with 1 as third coordinate, to directions.
@@ -69,9 +69,8 @@ class GroupedMatches {
   // `num_inliers` may be null: counting takes time.
   double Score(const Pose& pose, double threshold_px, double bound, int* num_inliers) const;
 
-  // The same where a match that lies behind a camera counts as an outlier too. An outlier far from
-  // where its point could be has much leverage, and half of those that an estimate could bend
-  // to would lie behind a camera. Never below Score(), to the last bit.
+  // The same, but a match that lies behind a camera counts as an outlier too. This removes about
+  // half of the outliers that a wrong motion could fit. Never below Score().
   double ScoreInFront(const Pose& pose, double threshold_px, double bound, int* num_inliers) const;
 
   // 1 for matches of a Sampson error below the threshold that do not lie behind a camera, else 0,

@@ -1,8 +1,8 @@
-// What is meant in pixels, where pixels may be of any size.
+// Defaults in pixels, for cameras of any focal length.
 //
-// Cameras of a few hundred pixels of focal length are what defaults in pixels are made for. With
-// normalised image coordinates (fx = 1) or small images a pixel is a larger angle, and such a
-// default is a share of the focal length instead.
+// The defaults are made for focal lengths of a few hundred pixels. With normalised image
+// coordinates (fx = 1) or small images a pixel is a larger angle. There a default is a share of the
+// focal length.
 #ifndef RIGEL_CORE_PIXEL_UNIT_H_
 #define RIGEL_CORE_PIXEL_UNIT_H_
 

@@ -1,10 +1,10 @@
-// The motion of another point of the body than its origin.
+// The motion of a point of the body that is not its origin.
 //
-// The body's origin is the user's: an axle, an IMU, a map's. With a long lever from it to the
-// cameras t says little but how the lever turns. Estimates are therefore made of the motion of the
-// rig's centre c, f2_from_f1 with both origins moved to c:
+// The user chooses the body's origin: an axle, an IMU, the origin of a map. If it is far from the
+// cameras, t is mostly the rotation times that distance. So the library estimates the motion of the
+// rig's centre c, which is f2_from_f1 with both origins moved to c:
 //   b = R c + t - c,   t = b + c - R c
-// and told as the motion of the body. Axes stay.
+// It reports the motion of the body. The axes are the same in both.
 #ifndef RIGEL_CORE_RIG_CENTRE_H_
 #define RIGEL_CORE_RIG_CENTRE_H_
 

@@ -14,7 +14,7 @@ struct Statistics {
   double p90 = 0.0;
 };
 
-// Half the distance of the quartiles: the spread of times, which outliers do not move. 0 for fewer
+// Half the distance of the quartiles: a measure of spread that outliers do not change. 0 for fewer
 // than four values.
 double QuartileDistance(std::vector<double> values);
 

@@ -20,8 +20,8 @@ const char* StopReasonName(StopReason reason);  // "none", "time limit", "cancel
 // A limit that makes sense: none, or finite and not negative. False with a message if not.
 bool IsValidTimeLimit(const std::optional<double>& time_limit, std::string* error);
 
-// Asked again and again by what it may stop. Once the answer was yes it stays yes; with neither a
-// limit nor a flag it costs nothing.
+// A loop calls Asked() again and again and ends once it is true. It stays true from then on.
+// Without a limit and a flag a call costs nothing.
 class Stop {
  public:
   Stop() = default;

@@ -38,7 +38,8 @@ struct SolverInfo {
   SampleKind sampling;
   SolveFunction solve;
   const char* source;  // one line: publication and equations
-  // About what a sample takes on one core of 2020, where that is much: RansacOptions::max_work_us.
+  // Microseconds that a sample takes on one core of 2020, about; 1 for all fast solvers. Used by
+  // RansacOptions::max_work_us.
   double nominal_us = 1.0;
 };
 

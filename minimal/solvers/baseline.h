@@ -10,8 +10,8 @@
 
 namespace rigel {
 
-// t = b + s_j - R s_i for R = R_y(a), c = cos a, s = sin a. Components of b, as a vector written by
-// them cannot be read back whole without waiting.
+// t = b + s_j - R s_i for R = R_y(a), c = cos a, s = sin a. Takes b by components: a
+// vector that is read right after its parts were written makes the processor wait.
 inline Eigen::Vector3d TranslationOfBaseline(const PreparedMatch& reference, double c, double s,
                                              double bx, double by, double bz) {
   const double* s1 = reference.s1;
