@@ -39,8 +39,8 @@ class GroupedMatches {
   // In grouped order; within a group in the order of the input.
   const std::vector<Match>& matches() const { return matches_; }
 
-  // At most `count` of the matches, evenly over their order: enough to tell a good motion from a
-  // bad one. original() is then the position in the subset.
+  // At most `count` of the matches, evenly spaced in their order. original() is then the position
+  // in the subset.
   GroupedMatches EvenSubset(size_t count) const;
   // The same number, but drawn at random: the order is cut into `count` parts of the same size, and
   // one match is drawn from each. For matches whose kinds alternate: EvenSubset() could take one

@@ -1,4 +1,4 @@
-// The motion of another point of the body than its origin.
+// The motion of a point of the body that is not its origin.
 //
 // The user chooses the body's origin: an axle, an IMU, the origin of a map. If it is far from the
 // cameras, t comes mostly from the rotation about it. So the estimate is of the motion of the rig's

@@ -43,13 +43,13 @@ struct GroupMotion {
 // Adds sum min(r^2, t2) over the matches to `sum` and returns it, where r is the Sampson error in
 // pixels under the row-major centred fundamental matrix F; `num_inliers`, unless null, grows by the
 // number of matches with r^2 < t2. A match with r = 0/0 (F = 0, an epipole) counts t2. Stops once
-// the sum exceeds `bound`: what is returned below or at it is complete, and as no term is negative
-// the complete sum is never below what is returned.
+// the sum exceeds `bound`. A sum up to `bound` is complete. One above it is a lower limit of the
+// complete sum, as no term is negative.
 double TruncatedSampsonSum(const PixelArrays& pixels, const double F[9], double t2, double bound,
                            double sum, int* num_inliers, CpuPath path = BestCpuPath());
 
-// The same where matches behind a camera count t2 too (TestCheirality() in cheirality.h says
-// kBehind or kMixed). In the same order: never below the sum above, to the last bit.
+// The same, but matches behind a camera count t2 too (TestCheirality() in cheirality.h says kBehind
+// or kMixed). The order of the terms is the same, so this sum is never below the one above.
 double TruncatedSampsonSumInFront(const PixelArrays& pixels, const RayArrays& rays,
                                   const double F[9], const GroupMotion& motion, double t2,
                                   double bound, double sum, int* num_inliers,
@@ -59,8 +59,8 @@ double TruncatedSampsonSumInFront(const PixelArrays& pixels, const RayArrays& ra
 void SquaredSampsonErrors(const PixelArrays& pixels, const double F[9], double* squared_errors,
                           CpuPath path = BestCpuPath());
 
-// The same, and 1 where the error is below t2 and the match does not lie behind a camera, else 0;
-// returns the number of ones.
+// The same errors. `inliers` gets 1 where the error is below t2 and the match does not lie behind a
+// camera, else 0. Returns the number of ones.
 int SelectInFront(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
                   const GroupMotion& motion, double t2, double* squared_errors, char* inliers,
                   CpuPath path = BestCpuPath());

@@ -21,7 +21,7 @@ namespace rigel::polynomial_system {
 // coordinate ring: row b holds x times monomial b. The first four monomials are 1, x, y, z.
 template <int kSize>
 struct ActionMatrix {
-  // Two more rows for those who solve it.
+  // The two rows at the end are room for the solution.
   double entries[kSize + 2][kSize];
 };
 
@@ -29,8 +29,8 @@ struct ActionMatrix {
 // as this, where entries are near 1, does not move its eigenvalues.
 inline constexpr double kLeastPivot = 1e-30;
 
-// The real solutions that a reduced system has. Loops over parts of rows begin at multiples of
-// four, where that takes in zeros only, so that they vectorize without remainders.
+// The real solutions of a reduced system. Loops over parts of rows begin at multiples of four where
+// the additional entries are zero: they vectorize without remainders.
 template <int kSize>
 class RealSolutions {
  public:
@@ -98,7 +98,7 @@ class RealSolutions {
 
  private:
   static_assert(kSize % 4 == 0);
-  // Values of x at once: the rows of one are a chain of operations, and the others fill the time.
+  // Values of x at once. The steps for one x depend on one another; those for others run meanwhile.
   static constexpr int kLanes = 4;
   // The constants of Refine(). A root below this, in the unit of x, counts as one of this size.
   static constexpr double kZeroRoot = 0.01;

@@ -1,7 +1,7 @@
 // Newton's method in brackets of one root each, safeguarded by halving.
 //
-// Several brackets at once: a step of one root depends on its last step, and the steps of the
-// others fill the time. Coefficients ascend, as in polynomial.h. No heap.
+// Several brackets at once: a step of one root depends on its last step, and the processor works on
+// the others meanwhile. Coefficients ascend, as in polynomial.h. No heap.
 #ifndef RIGEL_MINIMAL_NUMERICS_BRACKETED_NEWTON_H_
 #define RIGEL_MINIMAL_NUMERICS_BRACKETED_NEWTON_H_
 

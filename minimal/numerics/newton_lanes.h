@@ -1,5 +1,5 @@
-// A polynomial at several points at once, and Newton's method on several roots: the steps of one
-// root depend on one another, and those of the others fill the time.
+// A polynomial at several points at once, and Newton's method on several roots at once. The steps
+// of one root depend on one another; the processor works on the others meanwhile.
 //
 // Coefficients ascend, as in polynomial.h. No heap.
 #ifndef RIGEL_MINIMAL_NUMERICS_NEWTON_LANES_H_

@@ -169,7 +169,7 @@ class MacaulayMatrix {
     int basis[kSize];        // monomials
     int basis_column[kSize];
     int basis_of[kColumns];             // of a monomial in it
-    double reduced[kMaxPivots][kSize];  // the leading monomial of a pivot
+    alignas(32) double reduced[kMaxPivots][kSize];  // the leading monomial of a pivot
 
     // False unless kSize monomials are left.
     bool FindBasis(const int* monomial_of_column) {

@@ -1,10 +1,11 @@
 // The real solutions of a system of polynomials in three variables that has twenty, those near zero
 // best, from the action of multiplication by the first one (polynomial_system.h makes it).
 //
-// Multiplication is reduced to Hessenberg form from the monomials 1, x, x^2, ... on. That is less
-// work than from the other end (action_matrix.h), as their rows hold one entry each, and leaves
-// more digits of small roots in the characteristic polynomial. With 48 solutions the powers
-// of x are too nearly dependent.
+// The matrix of multiplication is reduced to Hessenberg form from the monomials 1, x, x^2, ... on.
+// Their rows hold one entry each, so that this is less work than from the other end
+// (action_matrix.h), and it leaves more digits of small roots in the characteristic polynomial.
+// With 48 solutions it fails, as the powers of x are nearly dependent. The two reductions share no
+// loop: this one eliminates along rows what the other eliminates along columns.
 //
 // Plain loops in a file of their own; every path gives the same bits (cpu_path.h). No heap.
 #ifndef RIGEL_MINIMAL_NUMERICS_TWENTY_SOLUTIONS_H_

@@ -256,8 +256,8 @@ void DepthSystem<kModel>::AddSolution(const PreparedMatches& matches, double z,
 
   const double* x1 = reference_->x1;
   const double* x2 = reference_->x2;
-  // The baseline of the reference's cameras, w times too long: w b = d2 x2 - d1 R x1. Components,
-  // as a vector written by them cannot be read back whole without waiting.
+  // The baseline of the reference's cameras, times w: w b = d2 x2 - d1 R x1. By components: to read
+  // a vector right after its parts were written makes the processor wait.
   const double bx = v[1] * x2[0] - v[0] * (c * x1[0] + s * x1[2]);
   const double by = v[1] * x2[1] - v[0] * x1[1];
   const double bz = v[1] * x2[2] - v[0] * (c * x1[2] - s * x1[0]);

@@ -79,7 +79,7 @@ DirectSample::DirectSample(const PreparedMatches& matches, const int* sample) : 
       }
     }
   }
-  // Two rows at once, as what is written apart cannot be read back together without waiting.
+  // Two rows at once: to read a pair right after its parts were written makes the processor wait.
   for (int r = 0; r < 4; r += 2) {
     const PreparedMatch& a = matches[sample_[r]];
     const PreparedMatch& b = matches[sample_[r + 1]];

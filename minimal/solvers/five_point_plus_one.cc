@@ -270,15 +270,6 @@ Eigen::Matrix3d Orthonormalized(const Eigen::Matrix3d& M) {
   return R;
 }
 
-// Counts a match whose rays are g and f in f2 for the unit baseline b or for -b, whichever has it
-// in front of both cameras.
-void Vote(const Eigen::Vector3d& g, const Eigen::Vector3d& f, const Eigen::Vector3d& b, int* votes,
-          int* votes_against) {
-  const DepthTerms depth = DepthTermsOf(g[0], g[1], g[2], f[0], f[1], f[2], b[0], b[1], b[2]);
-  *votes += depth.n1 > kNoParallax && depth.n2 > kNoParallax;
-  *votes_against += depth.n1 < -kNoParallax && depth.n2 < -kNoParallax;
-}
-
 // R and the unit vector b of E = [b]x R up to sign that have most of the five points in front of
 // both cameras. False if those are fewer than three: no motion, or five that do not agree.
 bool Decompose(const Eigen::Matrix3d& E, const Eigen::Vector3d* x1, const Eigen::Vector3d* x2,
@@ -302,8 +293,16 @@ bool Decompose(const Eigen::Matrix3d& E, const Eigen::Vector3d* x1, const Eigen:
   for (int k = 0; k < 5; ++k) {
     const Eigen::Vector3d g = *R * x1[k];
     const Eigen::Vector3d& f = x2[k];
-    Vote(g, f, *b, &votes[0], &votes[1]);
-    Vote(2.0 * b->dot(g) * *b - g, f, *b, &votes[2], &votes[3]);
+    const DepthTerms d = DepthTermsOf(g[0], g[1], g[2], f[0], f[1], f[2], b->x(), b->y(), b->z());
+    // The same with 2 (b.g) b - g for g.
+    const Eigen::Vector3d fb = f.cross(*b);
+    const double twice = 2.0 * b->dot(g);
+    const double e1 = -twice * fb.squaredNorm() - d.n1;
+    const double e2 = twice * g.cross(*b).dot(fb) + d.n2;
+    votes[0] += d.n1 > kNoParallax && d.n2 > kNoParallax;
+    votes[1] += d.n1 < -kNoParallax && d.n2 < -kNoParallax;
+    votes[2] += e1 > kNoParallax && e2 > kNoParallax;
+    votes[3] += e1 < -kNoParallax && e2 < -kNoParallax;
   }
   int choice = 0;
   for (int k = 1; k < 4; ++k) {

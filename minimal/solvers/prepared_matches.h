@@ -24,9 +24,9 @@ namespace rigel {
 
 class GroupedMatches;
 
-// Below this squared sine of the angle between its aligned rays a match does not move beyond
-// rounding. A sample whose matches all stay says nothing of translation: solvers return no
-// solution.
+// Squared sine of the angle between the aligned rays of a match. Below this the match does not
+// move, but for rounding. If no match of a sample moves, it does not determine the translation, and
+// solvers return no solution.
 inline constexpr double kNoParallax2 = 1e-18;
 
 // Below this tan(a/2) or angle a, radians, a root of a deflated sample (depth_system.h) is the pure
@@ -46,9 +46,9 @@ struct PreparedMatch : ConstraintRow {
   int camera1, camera2;
 };
 
-// True if the arms s2 - R_y(a) s1 of the two matches are the same at every angle: equal camera
-// centres at both times, but for a height along Y. Matches that all have the same arm say nothing
-// of |t|.
+// True if s2 - R_y(a) s1 of the two matches is the same at every angle: their camera centres are
+// equal at both times, but for a height along Y. If this holds for all matches, |t| is not
+// determined.
 inline bool SameArm(const PreparedMatch& a, const PreparedMatch& b) {
   constexpr double kSame = 1e-12;  // metres: below it is rounding
   // Most differ in the first coordinate.
@@ -68,7 +68,7 @@ class PreparedMatches {
   // any memory. `matches` must outlive the result.
   static PreparedMatches OnDemand(const GroupedMatches& matches, const Alignment& alignment);
 
-  // To be called before a sample of OnDemand() is solved; others are ready. No heap.
+  // Call it before a sample of OnDemand() is solved. Does nothing for other objects. No heap.
   void Prepare(const int* sample, int size);
 
   // Keeps the memory of the last frame pair.

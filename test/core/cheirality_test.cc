@@ -69,6 +69,13 @@ TEST(Cheirality, NamesWhereThePointLies) {
     EXPECT_EQ(test(false, false), Cheirality::kBehind);
     EXPECT_EQ(test(true, false), Cheirality::kMixed);
     EXPECT_EQ(test(false, true), Cheirality::kMixed);
+    const auto vote = [seed](bool front1, bool front2) {
+      const Problem p = MakeProblem(seed, front1, front2);
+      return CheiralityVote(p.pose, p.rays);
+    };
+    EXPECT_EQ(vote(true, true), 1);
+    EXPECT_EQ(vote(false, false), -1);
+    EXPECT_EQ(vote(true, false), 0);
   }
 }
 

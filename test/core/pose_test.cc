@@ -220,5 +220,15 @@ TEST(Pose, TangentBasisIsRightHandedAndOrthonormal) {
   }
 }
 
+TEST(Rotation, IsRotation) {
+  const Eigen::Matrix3d R = ExpSO3({0.3, -0.2, 0.5});
+  EXPECT_TRUE(IsRotation(R));
+  EXPECT_FALSE(IsRotation(1.001 * R));
+  EXPECT_FALSE(IsRotation(-R));
+  Eigen::Matrix3d nan = R;
+  nan(1, 2) = std::nan("");
+  EXPECT_FALSE(IsRotation(nan));
+}
+
 }  // namespace
 }  // namespace rigel
