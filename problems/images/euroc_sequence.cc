@@ -81,7 +81,7 @@ ImageCamera ParseCamera(const YAML::Node& sensor) {
   Eigen::Matrix4d body_from_camera;
   for (int k = 0; k < 16; ++k) body_from_camera(k / 4, k % 4) = T[k];
   const Eigen::Matrix3d R = body_from_camera.topLeftCorner<3, 3>();
-  if (!IsRotation(R) || body_from_camera.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+  if (!IsNearRotation(R) || body_from_camera.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
     throw YAML::RepresentationException(pose.Mark(), "T_BS: data is not a rigid motion");
   }
   camera.Q = Eigen::Quaterniond(R).normalized().toRotationMatrix();

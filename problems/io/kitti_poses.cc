@@ -30,7 +30,7 @@ bool ParsePose(std::string_view line, Pose* pose, std::string* error) {
   }
   Eigen::Matrix3d R;
   R << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
-  if (!IsRotation(R)) {
+  if (!IsNearRotation(R)) {
     *error = "the first three columns are not a rotation, expected R'R = I within 0.001";
     return false;
   }

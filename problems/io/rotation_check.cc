@@ -4,7 +4,7 @@
 
 namespace rigel {
 
-bool IsRotation(const Eigen::Matrix3d& R) {
+bool IsNearRotation(const Eigen::Matrix3d& R) {
   const Eigen::Matrix3d off = R.transpose() * R - Eigen::Matrix3d::Identity();
   return off.cwiseAbs().maxCoeff() <= kMaxRotationError && R.determinant() > 0;
 }

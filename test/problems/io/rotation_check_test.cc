@@ -12,13 +12,13 @@ namespace {
 
 TEST(RotationCheck, RotationsWithinTheTolerance) {
   const Eigen::Matrix3d R = ExpSO3({0.3, -0.2, 0.9});
-  EXPECT_TRUE(IsRotation(R));
-  EXPECT_TRUE(IsRotation(1.0004 * R));
-  EXPECT_FALSE(IsRotation(1.0006 * R)) << "R'R is off by 1.2e-3";
-  EXPECT_FALSE(IsRotation(-R)) << "a reflection";
+  EXPECT_TRUE(IsNearRotation(R));
+  EXPECT_TRUE(IsNearRotation(1.0004 * R));
+  EXPECT_FALSE(IsNearRotation(1.0006 * R)) << "R'R is off by 1.2e-3";
+  EXPECT_FALSE(IsNearRotation(-R)) << "a reflection";
   Eigen::Matrix3d broken = R;
   broken(1, 2) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(IsRotation(broken));
+  EXPECT_FALSE(IsNearRotation(broken));
 }
 
 }  // namespace
