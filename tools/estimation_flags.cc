@@ -64,9 +64,9 @@ DEFINE_bool(estimate_noise, false,
             "estimate the image noise from the residuals, even if the file states it");
 DEFINE_string(
     residual, "sampson",
-    "residual of the refinement: sampson (pixels), angular (radians) or algebraic (metres). "
-    "algebraic is for comparison only: it is not robust, and it tends to zero motion if all "
-    "matches are intra-camera and the scale is free");
+    "residual of the refinement: sampson (pixels), angular (times the focal length, pixels) or "
+    "algebraic (metres). algebraic is for comparison only: it is not robust, and it tends to zero "
+    "motion if all matches are intra-camera and the scale is free");
 DEFINE_string(loss, "cauchy",
               "robust loss of the refinement: none, huber, cauchy, tukey or truncated");
 DEFINE_string(
