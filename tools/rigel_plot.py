@@ -59,7 +59,7 @@ def check_output(path, inputs):
         except OSError:  # one of them is not there
             continue
         if same:
-            raise Bad(f"--html={path}: is the input {name}, which it would destroy")
+            raise Bad(f"--html={path}: would overwrite the input {name}")
 
 
 def inputs_of(paths):

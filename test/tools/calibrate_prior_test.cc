@@ -335,9 +335,10 @@ TEST_F(CalibratePriorTest, OutputWithOtherMatchFilesIsRefused) {
     const std::string before = ReadText(out + "/" + name);
     const Outcome run = RunTool("calibrate_prior", {"--matches=" + matches, "--output=" + out});
     EXPECT_EXIT_CODE(run, 1);
-    EXPECT_THAT(Lines(run.err),
-                ElementsAre(AllOf(HasSubstr(std::string("holds ") + name + ", which"),
-                                  HasSubstr("empty the directory or name another"))));
+    EXPECT_THAT(
+        Lines(run.err),
+        ElementsAre(AllOf(HasSubstr(std::string("holds ") + name + ", not written by this run"),
+                          HasSubstr("empty the directory or name another"))));
     EXPECT_EQ(ReadText(out + "/" + name), before);
   }
 }

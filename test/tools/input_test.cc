@@ -56,7 +56,7 @@ TEST_F(InputTest, StdinAndCompressedFilesAreReadAsFilesAre) {
   EXPECT_THAT(rubbish.err, HasSubstr("stdin: the file ends without a 'format' line"));
   const Outcome twice = RunTool("estimate", {"--matches=-,-"});
   EXPECT_EXIT_CODE(twice, 2);
-  EXPECT_THAT(twice.err, HasSubstr("stdin can be read but once"));
+  EXPECT_THAT(twice.err, HasSubstr("stdin can be read only once"));
   for (const std::string& output : {std::string("--in_place"), "--output=" + Path("out")}) {
     const Outcome write = RunTool("calibrate_prior", {"--matches=-", output});
     EXPECT_EXIT_CODE(write, 2);
