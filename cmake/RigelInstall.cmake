@@ -1,5 +1,5 @@
 # Installs the headers and the CMake package:
-#   find_package(rigel 0.1 REQUIRED [COMPONENTS core minimal refine problems])
+#   find_package(rigel 0.2 REQUIRED [COMPONENTS core minimal refine problems])
 include(CMakePackageConfigHelpers)
 
 set(RIGEL_INSTALL_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/rigel)

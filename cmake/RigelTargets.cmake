@@ -1,5 +1,8 @@
 # What every target of Rigel has in common.
 
+# No operations are fused: a processor with fused multiply-add would give other bits.
+add_compile_options(-ffp-contract=off)
+
 # rigel_warnings(target): the warnings that the code base is kept free of.
 function(rigel_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wnon-virtual-dtor -Woverloaded-virtual
@@ -11,12 +14,11 @@ function(rigel_warnings target)
   endif()
 endfunction()
 
-# rigel_kernels(a.cc b.cc): files of plain loops (core/cpu_path.h). The compiler may not fuse operations, else paths
-# differ in their last bits; it may evaluate both sides of a choice, which alters no value; and -O2 of g++ 12 leaves
-# most of them scalar.
+# rigel_kernels(a.cc b.cc): files of plain loops (core/cpu_path.h). The compiler may evaluate both
+# sides of a choice, which alters no value; and -O2 of g++ 12 leaves most of them scalar.
 function(rigel_kernels)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS
-    "-ffp-contract=off;-fno-math-errno;-fno-trapping-math;-Wno-psabi;$<$<CONFIG:Release,RelWithDebInfo>:-O3>")
+    "-fno-math-errno;-fno-trapping-math;-Wno-psabi;$<$<CONFIG:Release,RelWithDebInfo>:-O3>")
 endfunction()
 
 # Installed programs and shared libraries find Rigel's shared libraries wherever the prefix is.

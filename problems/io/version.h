@@ -4,7 +4,7 @@
 
 namespace rigel {
 
-// "0.1.0", as in CMake's project().
+// "0.2.0", as in CMake's project().
 const char* RigelVersion();
 
 }  // namespace rigel
