@@ -131,7 +131,8 @@ GroupedMatches GroupedMatches::Subset(const std::vector<size_t>& taken) const {
   size_t next = 0;
   for (const MatchGroup& group : groups_) {
     const size_t begin = next;
-    while (next < count && taken[next] < static_cast<size_t>(group.begin + group.size)) ++next;
+    const size_t end = static_cast<size_t>(group.begin) + static_cast<size_t>(group.size);
+    while (next < count && taken[next] < end) ++next;
     if (next == begin) continue;
     subset.groups_.push_back(
         {group.camera1, group.camera2, static_cast<int>(begin), static_cast<int>(next - begin)});

@@ -152,10 +152,10 @@ RIGEL_KERNEL_BODY void Count(const PixelArrays& pixels, const RayArrays& rays, c
       e[i] = depth.sin2 > motion.min_sin2 ? e[i] : t2;
     }
     for (int i = 0; i < block.size; ++i) {
+      // All are set above, for Rounded(size) of them.
+      // NOLINTBEGIN(clang-analyzer-core.UndefinedBinaryOperatorResult)
       const int one = e[i] < t2 ? 1 : 0;
       decided += one;
-      // Set above, for Rounded(size) of them.
-      // NOLINTBEGIN(clang-analyzer-core.UndefinedBinaryOperatorResult)
       in_front += sign1[i] > 0 && sign2[i] > 0 ? one : 0;
       behind += sign1[i] < 0 && sign2[i] < 0 ? one : 0;
       // NOLINTEND(clang-analyzer-core.UndefinedBinaryOperatorResult)

@@ -166,15 +166,7 @@ inline int CubicStarts(const double* c, double* roots) {
     const double root_Q = std::sqrt(Q);
     const double cosine = R / (Q * root_Q);
     double cos_third, sin_third;
-    // Where two roots are close the approximation would shift them by too much.
-    constexpr double kApart = 1e-4;
-    if (std::abs(cosine) < 1.0 - kApart) {
-      polynomial_internal::CosAndSinOfThird(cosine, &cos_third, &sin_third);
-    } else {
-      const double third = std::acos(std::clamp(cosine, -1.0, 1.0)) / 3.0;
-      cos_third = std::cos(third);
-      sin_third = std::sin(third);
-    }
+    polynomial_internal::TrisectAngle(cosine, &cos_third, &sin_third);
     roots[0] = -2.0 * root_Q * cos_third - third_a;
     roots[1] = root_Q * (cos_third + polynomial_internal::kSqrt3 * sin_third) - third_a;
     roots[2] = root_Q * (cos_third - polynomial_internal::kSqrt3 * sin_third) - third_a;

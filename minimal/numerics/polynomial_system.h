@@ -168,7 +168,7 @@ class MacaulayMatrix {
     int pivot_of[kColumns];  // of a monomial; -1: none, it is in the basis
     int basis[kSize];        // monomials
     int basis_column[kSize];
-    int basis_of[kColumns];             // of a monomial in it
+    int basis_of[kColumns];                         // of a monomial in it
     alignas(32) double reduced[kMaxPivots][kSize];  // the leading monomial of a pivot
 
     // False unless kSize monomials are left.
