@@ -183,7 +183,8 @@ TEST(Flags, ValueOutOfRangeIsAUsageErrorBeforeAnyFileIsRead) {
     ExpectUsageError(tool, {"--refine=bundle", "--residual=angular"}, "reprojection errors");
     for (const char* flag :
          {"--fix_translation_norm", "--use_prior_in_refine", "--estimate_noise"}) {
-      ExpectUsageError(tool, {"--refine=none", flag}, "have no effect without a refinement (--refine=none)");
+      ExpectUsageError(tool, {"--refine=none", flag},
+                       "have no effect without a refinement (--refine=none)");
     }
     const Outcome run = RunTool(tool, {});
     EXPECT_EXIT_CODE(run, 2);
