@@ -46,25 +46,25 @@ void AddDirectory(const std::string& directory, MatchFileList* list) {
 
 }  // namespace
 
-void MatchFileList::Add(const std::string& item) {
+void MatchFileList::Add(const std::string& path) {
   namespace fs = std::filesystem;
-  if (item == "-") {
+  if (path == "-") {
     if (has_stdin) {
       errors.emplace_back("-: named twice, expected once: stdin can be read but once");
     } else {
-      paths.push_back(item);
+      paths.push_back(path);
     }
     has_stdin = true;
     return;
   }
   std::error_code code;
-  const fs::file_status status = fs::status(item, code);
+  const fs::file_status status = fs::status(path, code);
   if (!fs::exists(status)) {
-    errors.push_back(Printable(item) + ": cannot be opened: " + code.message());
+    errors.push_back(Printable(path) + ": cannot be opened: " + code.message());
   } else if (fs::is_directory(status)) {
-    AddDirectory(item, this);
+    AddDirectory(path, this);
   } else {
-    paths.push_back(item);
+    paths.push_back(path);
   }
 }
 

@@ -15,8 +15,10 @@ bool ParseFinite(std::string_view word, double* value);
 template <class Integer>
 bool ParseInteger(std::string_view word, Integer min, Integer* value) {
   const char* const end = word.data() + word.size();
-  const auto [stop, status] = std::from_chars(word.data(), end, *value);
-  return status == std::errc() && stop == end && *value >= min;
+  Integer parsed = 0;
+  const auto [stop, status] = std::from_chars(word.data(), end, parsed);
+  *value = parsed;
+  return status == std::errc() && stop == end && parsed >= min;
 }
 
 }  // namespace rigel
