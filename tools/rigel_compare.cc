@@ -10,7 +10,7 @@
 
 #include "rigel/problems/evaluation/batch.h"
 #include "rigel/problems/evaluation/bounds.h"
-#include "rigel/problems/evaluation/report.h"
+#include "rigel/problems/evaluation/comparison_report.h"
 #include "rigel/problems/evaluation/sequence_tables.h"
 #include "rigel/problems/evaluation/shard_report.h"
 #include "rigel/problems/io/input_file.h"

@@ -6,7 +6,8 @@
 
 #include <gflags/gflags.h>
 
-#include "rigel/problems/evaluation/report.h"
+#include "rigel/problems/evaluation/drift_report.h"
+#include "rigel/problems/evaluation/estimate_report.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/message_groups.h"
 #include "rigel/problems/io/trajectory_file.h"

@@ -2,15 +2,12 @@
 // direction of that pair's baseline, the sixth the scale.
 //
 // With the rays in the body frames the essential matrix of the pair (i, j) is E = [b]x R with the
-// body's own R and b = R s_i + t - s_j. Five matches x_j' E x_i = 0 leave E = x X + y Y + z Z + W;
-// det E = 0 and 2 E E'E - tr(E E') E = 0 are ten cubics in (x, y, z), from which Gauss-Jordan
-// elimination leaves a 3x3 matrix B(z) with B(z) (x, y, 1) = 0, and det B has degree 10. E splits
-// into two rotations and b up to sign; of the four, the one that has most of the five points in
-// front of both cameras is taken (none if those are fewer than three), and Newton steps on the
-// five constraints remove the polynomial's rounding. The sixth match is linear in the length of b.
-// Source: Nister, "An Efficient Solution to the Five-Point Relative Pose Problem", PAMI 26, 2004,
-//   the polynomial; Horn, "Recovering Baseline and Orientation from Essential Matrix", 1990, the
-//   factors of E; the five-plus-one scheme of generalized cameras for the scale.
+// body's own R and b = R s_i + t - s_j (five_point_essential.h). E splits into two rotations and b
+// up to sign. Of the four motions, the one that has most of the five points in front of both
+// cameras is taken, and none if those are fewer than three. Newton steps on the five constraints
+// remove the polynomial's rounding. The sixth match is linear in the length of b.
+// Source: Horn, "Recovering Baseline and Orientation from Essential Matrix", 1990, the factors of
+//   E; the five-plus-one scheme of generalized cameras for the scale.
 //
 // Sampling: sample[0..4] must be of one ordered pair (i, j), i = j or not: other samples have no
 // solution. sample[5] should be of another pair.

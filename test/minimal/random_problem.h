@@ -15,6 +15,7 @@
 
 #include "rigel/core/alignment.h"
 #include "rigel/core/angles.h"
+#include "rigel/core/epipolar.h"
 #include "rigel/core/match.h"
 #include "rigel/core/metrics.h"
 #include "rigel/core/pose.h"
@@ -158,6 +159,12 @@ inline MotionError BestMotion(const Solutions& solutions, const Pose& truth) {
     }
   }
   return best;
+}
+
+// How far a match is from the epipolar constraint of a solution, relative to the length of t.
+inline double ConstraintError(const RandomProblem& problem, int match, const Solution& solution) {
+  return std::abs(GecTripleProduct(solution, MakeRayPair(problem.rig, problem.matches[match]))) /
+         (1.0 + solution.t.norm());
 }
 
 }  // namespace rigel

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rigel/problems/evaluation/report.h"
+#include "rigel/problems/evaluation/comparison_report.h"
 
 namespace rigel {
 namespace {

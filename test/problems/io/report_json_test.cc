@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rigel/problems/evaluation/report.h"
+#include "rigel/problems/evaluation/estimate_report.h"
 #include "rigel/problems/scenes/synthetic.h"
 
 namespace rigel {
