@@ -1,5 +1,5 @@
-// Google Benchmark of the hot kernels: each minimal solver, scoring, residuals, local optimization;
-// and of the reader of match files.
+// Google Benchmark of the hot kernels: each minimal solver, small linear systems, scoring,
+// residuals, local optimization; and of the reader of match files.
 //
 //   build/release/bin/kernels_benchmark --benchmark_repetitions=9
 //   --benchmark_report_aggregates_only
@@ -10,9 +10,12 @@
 
 #include <benchmark/benchmark.h>
 
+#include <Eigen/LU>
+
 #include "rigel/core/grouped_matches.h"
 #include "rigel/core/random.h"
 #include "rigel/minimal/catalogue.h"
+#include "rigel/minimal/numerics/elimination.h"
 #include "rigel/minimal/ransac/sampler.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/scenes/synthetic.h"
@@ -227,6 +230,44 @@ void BM_SampsonJacobian(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * 600);
 }
 BENCHMARK(BM_SampsonJacobian);
+
+// What elimination.h is for, and the same by Eigen. Many systems, so that the branch predictor
+// cannot learn their pivots.
+constexpr int kSystems = 256;
+
+std::vector<Eigen::Matrix<double, 6, 8>> RandomSystems() {
+  std::vector<Eigen::Matrix<double, 6, 8>> systems(kSystems);
+  Random random(1);
+  for (auto& system : systems) {
+    for (double& value : system.reshaped()) value = random.Normal();
+  }
+  return systems;
+}
+
+void BM_SixEquations(benchmark::State& state) {
+  const auto systems = RandomSystems();
+  size_t k = 0;
+  for (auto _ : state) {
+    Eigen::Matrix<double, 6, 8, Eigen::RowMajor> rows = systems[k];
+    double x[6];
+    SolveSixBySix(reinterpret_cast<double(*)[8]>(rows.data()), x);
+    benchmark::DoNotOptimize(x);
+    k = (k + 1) % kSystems;
+  }
+}
+BENCHMARK(BM_SixEquations);
+
+void BM_SixEquationsByEigen(benchmark::State& state) {
+  const auto systems = RandomSystems();
+  size_t k = 0;
+  for (auto _ : state) {
+    Eigen::Matrix<double, 6, 1> x =
+        systems[k].leftCols<6>().partialPivLu().solve(systems[k].col(6));
+    benchmark::DoNotOptimize(x);
+    k = (k + 1) % kSystems;
+  }
+}
+BENCHMARK(BM_SixEquationsByEigen);
 
 void BM_SmallEngine(benchmark::State& state) {
   const FramePair pair = ScenePair(600, 0.5, 0.5, MotionPattern::kRandom);
