@@ -18,6 +18,7 @@ bool FramePair::IsValid(std::string* error) const {
       return false;
     }
   }
+  if (!columns.IsValid(matches.size(), error)) return false;
   for (const auto* time : {&time1, &time2}) {
     if (time->has_value() && !std::isfinite(**time)) {
       *error = "a time is not finite";

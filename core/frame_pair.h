@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rigel/core/match.h"
+#include "rigel/core/match_columns.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/prior.h"
 #include "rigel/core/rig.h"
@@ -18,6 +19,7 @@ struct FramePair {
   std::string sequence;  // groups pairs in reports; may be empty
   Rig rig;
   std::vector<Match> matches;
+  MatchColumns columns;  // more about the matches
   MotionPrior prior;
   std::optional<double> time1, time2;  // seconds
   std::optional<Pose> truth;           // f2_from_f1
@@ -26,8 +28,9 @@ struct FramePair {
   std::optional<double> noise_px;
 
   // False with a message if the rig or the prior is invalid, a match names a camera that is not
-  // there, a pixel or time is not finite, the truth is no finite motion or noise_px is not
-  // positive and finite. The score of a match may be NaN: it is then the worst.
+  // there, a pixel or time is not finite, a column does not fit the matches, the truth is no finite
+  // motion or noise_px is not positive and finite. The score of a match may be NaN: it is then the
+  // worst.
   bool IsValid(std::string* error) const;
 };
 
