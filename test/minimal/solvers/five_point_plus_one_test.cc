@@ -160,8 +160,9 @@ TEST(FivePointPlusOne, NoParallaxHasNoSolution) {
 }
 
 TEST(FivePointPlusOne, ForwardMotionAndCoplanarPoints) {
+  constexpr int kProblems = 4000;
   int found = 0;
-  for (int seed = 0; seed < 500; ++seed) {
+  for (int seed = 0; seed < kProblems; ++seed) {
     RandomProblem problem = MakeRandomProblem(seed, FiveOptions(false));
     Random rng = Random::Stream(82, seed);
     problem.truth.R = ExpSO3(0.03 * rng.UnitVector3());
@@ -180,7 +181,9 @@ TEST(FivePointPlusOne, ForwardMotionAndCoplanarPoints) {
     Solve5ptPlusOne(problem.Prepare(PriorKind::kNone), kSix, &solutions);
     found += BestRotationError(solutions, problem.truth) < 1e-6;
   }
-  EXPECT_GE(found, 490);
+  // Measured: 3921 on x86-64, 3919 on arm64, whose sines and cosines differ in last bits. The
+  // scatter of such a count is sqrt(4000 * 0.98 * 0.02) = 9; the bound is five of them below.
+  EXPECT_GE(found, 3876);
 }
 
 TEST(FivePointPlusOne, NonFiniteInputGivesNoFiniteMotion) {
