@@ -93,6 +93,10 @@ bool ParseComponent(std::string_view text, double* value) {
 
 }  // namespace
 
+// Degrees, of a stated forward direction and the line of down. Nearer ones are a mistake: a vehicle
+// climbs less than that. A default of down is at 45 degrees or more.
+constexpr int kLeastAngleDeg = 30;
+
 bool ResolveBodyAxes(const Rig& rig, const std::optional<Eigen::Vector3d>& down,
                      const std::optional<Eigen::Vector3d>& forward, BodyAxes* axes,
                      std::string* error) {
@@ -101,10 +105,10 @@ bool ResolveBodyAxes(const Rig& rig, const std::optional<Eigen::Vector3d>& down,
   if (!forward) {
     result.forward = DefaultForward(rig, result.down);
   } else {
-    // A default is never so near to it.
     const Eigen::Vector3d across = Across(forward->normalized(), result.down);
-    if (!(across.norm() > std::sin(DegToRad(30.0)))) {
-      *error = "forward " + DirectionText(*forward) + " is within 30 degrees of the line of down " +
+    if (!(across.norm() > std::sin(DegToRad(kLeastAngleDeg)))) {
+      *error = "forward " + DirectionText(*forward) + " is within " +
+               std::to_string(kLeastAngleDeg) + " degrees of the line of down " +
                DirectionText(result.down);
       return false;
     }

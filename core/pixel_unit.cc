@@ -16,7 +16,9 @@ double PixelUnit(const Rig& rig) {
 }
 
 double DefaultThresholdPx(const Rig& rig) {
-  return std::max(1.5 * PixelUnit(rig), kMinThresholdPx);
+  // Pixels: three sigma of 0.5 px, about the noise of keypoints.
+  constexpr double kDefaultThresholdPx = 1.5;
+  return std::max(kDefaultThresholdPx * PixelUnit(rig), kMinThresholdPx);
 }
 
 double ThresholdPx(double threshold_px, const Rig& rig) {

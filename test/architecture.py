@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Who may include whom, and which headers are installed.
+"""Who may include whom, how tests are named, and which headers are installed.
 
     test/architecture.py [SOURCE_DIRECTORY]
 
 Reads the #include lines of the library and the programs. Fails, with one line for each finding, on
   - an include that the table below does not allow, a folder that is not in it, and a cycle between modules;
   - an include that names no file, or that leaves out "rigel/" and so hides from this table;
+  - a test of the library whose name does not begin with a header of its folder, or with the folder's own name;
   - an installed header that is neither public nor included by one that is, and on one of these that is not installed.
 The public headers are those of the tables of docs/api.md; the installed ones are listed in cmake/RigelHeaders.cmake.
 Exit code 0 if there is no finding, else 1.
@@ -100,14 +101,16 @@ def check_includes(root, findings):
       continue
     includes[path] = []
     for number, line in enumerate(read(root, path).split("\n"), 1):
-      match = re.match(r'\s*#\s*include\s*"([^"]*)"', line)
+      match = re.match(r'\s*#\s*include\s*(?:"([^"]*)"|<(rigel/[^>]*)>)', line)
       if not match:
         continue
       where = f"{path}:{number}"
-      if not match[1].startswith("rigel/"):
+      if match[2]:
+        findings.append(f"{where}: <{match[2]}>: write it in quotes")
+      elif not match[1].startswith("rigel/"):
         findings.append(f'{where}: "{match[1]}" does not begin with rigel/')
         continue
-      used = match[1][len("rigel/"):]
+      used = (match[1] or match[2])[len("rigel/"):]
       if not os.path.isfile(os.path.join(root, used)):
         findings.append(f"{where}: there is no {used}")
         continue
@@ -155,12 +158,27 @@ def check_headers(root, includes, findings):
   return public, installed
 
 
+def check_tests(root, findings):
+  """Whether each test of the library names a header, or the folder of several."""
+  for layer in ("core", "minimal", "refine", "problems"):
+    for folder, _, names in os.walk(os.path.join(root, "test", layer)):
+      tested = os.path.relpath(folder, os.path.join(root, "test"))
+      subjects = {os.path.basename(tested)}
+      if os.path.isdir(os.path.join(root, tested)):
+        subjects.update(name[:-2] for name in os.listdir(os.path.join(root, tested)) if name.endswith(".h"))
+      for name in sorted(names):
+        words = name[:-len("_test.cc")].split("_") if name.endswith("_test.cc") else []
+        if words and not any("_".join(words[:n]) in subjects for n in range(1, len(words) + 1)):
+          findings.append(f"test/{tested}/{name}: neither a header of {tested} nor {os.path.basename(tested)} comes first")
+
+
 def main():
   root = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
   findings = []
   check_table(findings)
   includes, arrows = check_includes(root, findings)
   public, installed = check_headers(root, includes, findings)
+  check_tests(root, findings)
   for finding in findings:
     print(finding)
   print(f"{len(includes)} files, {len(MAY_USE)} modules, {sum(map(len, arrows.values()))} arrows; "

@@ -7,6 +7,7 @@ Reads all Markdown files of the source tree. Fails, with one line for each findi
   - a link to a file that is not there, or to a heading that its page does not have;
   - a file of the source tree, named with its folder, that is not there, also in the comments of sources and scripts;
   - a header that a comment names and no folder has;
+  - C++ code of the README that is not in docs/examples/first_motion.cc, which a test compiles and runs;
   - a name that a page says is in such a file, as `core/pose.h`, `RotationY()`, and that the file does not have.
 A NAME.h stands for any file. CHANGELOG.md may name what is gone.
 Exit code 0 if there is no finding, else 1; also 1 where there is no page at all.
@@ -19,6 +20,7 @@ import sys
 FOLDERS = ("core", "minimal", "refine", "problems", "tools", "test", "docs", "cmake")
 SKIPPED = (".git", "build", "seeds", "compatibility")
 SOURCES = (".h", ".cc", ".py", ".sh", ".cmake")
+README_EXAMPLE = "docs/examples/first_motion.cc"
 FILE = re.compile(r"(?<![\w/.$}-])(?:rigel/|\./)?((?:" + "|".join(FOLDERS) +
                   r")/[\w./+-]*\.(?:h|cc|md|py|sh|json|cmake|txt|png))(?![\w*])")
 
@@ -71,6 +73,18 @@ def page_findings(root, page):
         yield f"{page}: {path} does not have {name}"
 
 
+def readme_code_findings(root):
+  """The C++ lines of the README, in their order, are lines of its example; comments /* */ stand for what is left out."""
+  blocks = "".join(re.findall(r"^```cpp\n(.*?)^```", read(root, "README.md"), flags=re.M | re.S))
+  if not blocks:
+    yield "README.md: there is no C++ code"
+  example = iter([line.strip() for line in read(root, README_EXAMPLE).split("\n")])
+  for line in blocks.split("\n"):
+    if line.strip() and "/*" not in line and line.strip() not in example:
+      yield f"README.md: not in {README_EXAMPLE}, or not in this place: {line}"
+      return
+
+
 def named_files(root, path, headers):
   text = read(root, path)
   for name in sorted(set(FILE.findall(text))):
@@ -93,6 +107,8 @@ def main():
       findings += page_findings(root, path)
     if path.endswith(SOURCES + (".md",)) and path != "CHANGELOG.md":
       findings += named_files(root, path, headers)
+  if os.path.exists(os.path.join(root, README_EXAMPLE)):
+    findings += readme_code_findings(root)
   for finding in findings:
     print(finding)
   if pages == 0:

@@ -185,7 +185,7 @@ std::string NoPointInView() {
 }
 
 int RunRefinement() {
-  // Problems: some minutes. More are of no use, the medians have settled.
+  // Problems: half a minute of one core. More are of no use, the medians have settled.
   constexpr int kMostProblems = 200;
   RefineBenchmarkOptions options;
   options.problems = std::min(FLAGS_trials, kMostProblems);

@@ -21,6 +21,9 @@ from rigel_claims_verdict import Claim
 from rigel_files import Bad, printable, read_json, write_whole
 
 VERSION = "@PROJECT_VERSION@"
+FIRST_LINE = "<!-- Written by rigel_claims.py; do not edit. -->"
+TABLE_HEAD = ["| of | experiment | claim | verdict | figures | where not |",
+              "| --- | --- | --- | --- | --- | --- |"]
 LIST = os.path.join(os.path.dirname(os.path.abspath(__file__)), "rigel_claims.json")
 
 
@@ -50,24 +53,18 @@ def read_results(directory, units):
 
 
 def about(results):
-    names_by_size = {}
-    for name, result in results.items():
-        names_by_size.setdefault(result.size, []).append(name)
-    sizes = "; ".join(f"{', '.join(names)}: {size}" for size, names in names_by_size.items())
-    return (
-        "Each claim of the paper's experiments, and what Rigel adds, held against results of "
-        f"`rigel_experiment` ({sizes}). The paper's claims are of the raw motions where the "
-        "largest inlier count wins; errors are medians in degrees, times are of the machine that "
-        "ran it. Confirmed: in all cases unless the claim says otherwise; partly: in three of "
-        "four; too few pairs: chance could decide. \"Best\" and \"beat\" are taken to the last "
-        "digit, and medians of few pairs differ by chance.")
+    """The text above the table, lines of Markdown."""
+    return ["The claims of the paper's experiments and Rigel's own, checked against results of `rigel_experiment`:", "",
+            *(f"- `{name}`: {result.size}" for name, result in results.items()), "",
+            "Errors are medians in degrees. Times are of the machine that ran the experiments. The paper's claims are",
+            "checked on the raw motions of its own loop, where the most inliers win. A claim is confirmed if it holds in",
+            "all cases, partly if in three of four, unless it says otherwise. Medians of few pairs scatter; with too few",
+            "pairs there is no verdict."]
 
 
 def markdown(judged, results):
     keys = ("of", "experiment", "claim", "verdict", "figures", "where_not")
-    lines = ["<!-- Written by rigel_claims.py; do not edit. -->", "", "# Claims", "",
-             about(results), "", "| of | experiment | claim | verdict | figures | where not |",
-             "| --- | --- | --- | --- | --- | --- |"]
+    lines = [FIRST_LINE, "", "# Claims", "", *about(results), "", *TABLE_HEAD]
     for claim in judged:
         cells = [f"**{claim[key]}**" if key == "verdict" else claim[key] for key in keys]
         lines.append("| " + " | ".join(cells) + " |")

@@ -128,7 +128,7 @@ bool ReadSequence(const EurocOptions& euroc, ImageSequence* sequence, std::strin
 
 // Says on stderr what was written and what could not be.
 void Report(const SequenceMatchingSummary& summary) {
-  // Lines of messages: a range of which the images are not there is told shortly.
+  // Lines of messages. If the images of a whole range are missing, a few names are enough.
   constexpr size_t kMaxMissing = 5;
   for (const std::string& note : summary.notes) std::cerr << note << "\n";
   const size_t shown = std::min(summary.missing.size(), kMaxMissing);

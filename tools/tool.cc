@@ -84,12 +84,14 @@ void PrintWrapped(const std::string& text) {
 
 void PrintHelp(const std::string& usage) {
   std::cout << usage << "\nFlags:\n";
+  bool has_bounds = false;
   for (const auto& flag : OwnFlags()) {
     std::cout << "  " << FlagWithDefault(flag) << "\n";
     PrintWrapped(flag.description);
+    has_bounds = has_bounds || flag.name == "fail_above";
   }
-  std::cout
-      << "\nExit code: 0 done, 1 failed, 2 wrong flag, 3 a bound that a flag set was missed.\n";
+  std::cout << "\nExit code: 0 done, 1 failed, 2 wrong flag"
+            << (has_bounds ? ", 3 a bound that a flag set was missed.\n" : ".\n");
 }
 
 }  // namespace

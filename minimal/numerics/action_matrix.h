@@ -53,7 +53,7 @@ class RealSolutions {
       bool done[kLanes];
       for (int l = 0; l < kLanes; ++l) {
         at[l] = x[std::min(first + l, count - 1)];
-        last[l] = at[l] + kSecantStart * (kZeroRoot + std::abs(at[l]));
+        last[l] = at[l] + kSecantStart * (kLeastScale + std::abs(at[l]));
         done[l] = false;
       }
       Determinants(last, last_value);
@@ -62,12 +62,12 @@ class RealSolutions {
         bool all = true;
         for (int l = 0; l < kLanes; ++l) {
           const double step = value[l] * (last[l] - at[l]) / (last_value[l] - value[l]);
-          done[l] = done[l] || !(std::abs(step) < kFarStep * (kFarRoot + std::abs(at[l])));
+          done[l] = done[l] || !(std::abs(step) < kFarSecantStep * (kFarRoot + std::abs(at[l])));
           if (!done[l]) {
             last[l] = at[l];
             last_value[l] = value[l];
             at[l] -= step;
-            done[l] = std::abs(step) < kRefined * (kZeroRoot + std::abs(at[l]));
+            done[l] = std::abs(step) < kRefined * (kLeastScale + std::abs(at[l]));
           }
           all = all && done[l];
         }
@@ -101,7 +101,7 @@ class RealSolutions {
   // Values of x at once. The steps for one x depend on one another; those for others run meanwhile.
   static constexpr int kLanes = 4;
   // The constants of Refine(). A root below this, in the unit of x, counts as one of this size.
-  static constexpr double kZeroRoot = 0.01;
+  static constexpr double kLeastScale = 0.01;
   // The second point of the secant method, relative to the root: beyond the error of the first.
   static constexpr double kSecantStart = 1e-7;
   // The step after which it ends, relative to the root: well above rounding, and the next step
@@ -110,7 +110,7 @@ class RealSolutions {
   static constexpr int kSecantSteps = 4;  // at most: from 1e-7 three reach rounding
   // A step that is not shorter than these say leads to another root, and is not taken: a share of
   // the root, where that is larger than the second number, in the unit of x.
-  static constexpr double kFarStep = 0.05;
+  static constexpr double kFarSecantStep = 0.05;
   static constexpr double kFarRoot = 0.1;
 
   static constexpr int Down(int k) { return k & ~3; }

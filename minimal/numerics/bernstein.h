@@ -1,9 +1,9 @@
-// Polynomials in the Bernstein basis on an interval, for the isolation of roots: the sign
-// variations of the coefficients bound the number of roots inside (Descartes' rule; Lane and
+// Polynomials in the Bernstein basis on an interval, for the isolation of roots. The number of sign
+// changes of the coefficients bounds the number of roots inside (Descartes' rule; Lane and
 // Riesenfeld 1981).
 //
-// Coefficients of the power basis ascend, as in polynomial.h. A degree is an int, or the constant
-// Known<N> where the compiler shall know it. No heap.
+// Coefficients of the power basis ascend, as in polynomial.h. A degree is an int, or Known<N> if
+// the compiler is to know it. No heap.
 #ifndef RIGEL_MINIMAL_NUMERICS_BERNSTEIN_H_
 #define RIGEL_MINIMAL_NUMERICS_BERNSTEIN_H_
 

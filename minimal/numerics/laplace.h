@@ -1,9 +1,10 @@
 // Laplace expansion of 4x4 determinants by pairs of columns, two terms at once in the lanes of a
 // vector register.
 //
-// Of the columns (a, b) and (c, d), det = sum over the six choices of two rows i, j of the minor of
-// (a, b) in them times that of (c, d) in the other rows p, q, (i, j, p, q) being an even
-// permutation. The lanes of a term hold one choice and its complement.
+// The determinant of the columns (a, b, c, d) is a sum over the six choices of two rows i and j. A
+// summand is the minor of (a, b) in the rows i, j times the minor of (c, d) in the other two rows
+// p, q, where (i, j, p, q) is an even permutation. The lanes of a term hold one choice and its
+// complement.
 #ifndef RIGEL_MINIMAL_NUMERICS_LAPLACE_H_
 #define RIGEL_MINIMAL_NUMERICS_LAPLACE_H_
 

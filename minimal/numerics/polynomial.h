@@ -45,8 +45,8 @@ inline bool LeadingIsZero(const double* c) {
   return !(std::abs(c[N]) > kTinyLeading * largest);
 }
 
-// Two Newton steps on each of `count` <= N roots; where they do not contract, steps that do not
-// reduce |p| are not taken.
+// Takes two Newton steps on each of `count` <= N roots. If the second step is not much smaller than
+// the first, a step is taken only if it makes |p| smaller.
 template <int N>
 inline void Polish(const double* c, int count, double* roots) {
   const PolynomialInLanes<N> p(c);
@@ -56,9 +56,14 @@ inline void Polish(const double* c, int count, double* roots) {
   const Lanes<N> next_step = p.NewtonStep(next);
   // Relative to the root. Steps below it are rounding, and need not become smaller.
   constexpr double kRounding = 1e-14;
-  constexpr double kSmall = 1e-4;  // more is the doing of a slope that vanishes
+  // Relative to the largest root. The starts are better than this; a larger step comes from a slope
+  // that is nearly zero, as at a double root.
+  constexpr double kSmall = 1e-4;
+  // Of the first step, the largest second one. At a single root it is far smaller, at a double root
+  // half of the first.
+  constexpr double kContraction = 0.25;
   if ((step.abs() <= kSmall * x.abs().maxCoeff()).all() &&
-      (next_step.abs() <= 0.25 * step.abs() + kRounding * x.abs()).all()) {
+      (next_step.abs() <= kContraction * step.abs() + kRounding * x.abs()).all()) {
     const Lanes<N> polished = next - next_step;
     for (int l = 0; l < count; ++l) roots[l] = polished[l];
     return;
@@ -119,8 +124,8 @@ inline int RealRoots<2>(const double* c, double* roots) {
 inline int CubicStarts(const double* c, double* roots) {
   if (!polynomial_internal::AllFinite<3>(c)) return 0;
   if (polynomial_internal::LeadingIsZero<3>(c)) return RealRoots<2>(c, roots);
-  // One root that is far from the other two would drown them, or drown in them, below. It is
-  // divided out first, from the end where that is stable; each step divides the error by kFar.
+  // If one root is far from the other two, rounding would spoil either it or them below. It is
+  // divided out first, from the end where that is stable. Each step divides the error by kFar.
   constexpr double kFar = 1e-4;
   constexpr int kSteps = 4;  // kFar^4 is below rounding
   const double c1_2 = c[1] * c[1];

@@ -129,14 +129,14 @@ RIGEL_KERNEL_BODY void CharacteristicPolynomial(const double (*a)[kSize], double
   for (int i = 0; i <= kSize; ++i) c[i] = p[kSize][i];
 }
 
-// The solutions of the `count` <= kLanes eigenvalues near x: at once, as the rows of one are a
-// chain of operations, and the others fill the time.
+// The solutions of the `count` <= kLanes eigenvalues near x. All are computed at once: each is a
+// chain of dependent operations, and those of the others fill the waiting time.
 //
-// B = H - x I is made lower triangular from its last row up, each time with the better pivot of the
-// two rows that reach a column: Hyman's recurrence, always with the 1 of the superdiagonal, loses
-// all digits of y and z where x is large. The vector v that satisfies all rows but the first, and
-// w, the sum of rows that the first is, give the Newton step w'B v / w'v of the eigenvalue, which
-// is needed where roots are close to the ones left out.
+// B = H - x I is made lower triangular from its last row up. Each column takes the larger pivot of
+// the two rows that reach it. Hyman's recurrence always takes the 1 of the superdiagonal instead;
+// then y and z lose all digits if x is large. The vector v satisfies all rows but the first. The
+// vector w has the factors with which the rows sum to the first. The Newton step of the eigenvalue
+// is w'B v / w'v. It is needed if a root is close to one of those that were left out.
 RIGEL_KERNEL_BODY void Solve(const double (*a)[kSize], int count, const double* x,
                              double (*solutions)[3]) {
   Lanes at;

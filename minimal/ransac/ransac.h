@@ -176,8 +176,9 @@ class RansacRun {
     if (Stopped()) return;
     // The best motion too: its threshold may exclude the few matches of large parallax.
     const Model best = result_.best;
-    // After so many finalists without an improvement the rest is skipped. More of them take time;
-    // with fewer, a later finalist that improves could be missed.
+    // After so many finalists without an improvement the rest is skipped. Half of the default
+    // number of finalists: each takes the time of a local optimization, and one that fails says
+    // little of the next. What finalists give and take: rigel_benchmark --ransac=ablation.
     constexpr int kMaxWorse = 2;
     int num_worse = 0;
     for (int k = capacity_ > 0 ? -1 : 0; k < finalists_.size && result_.found; ++k) {

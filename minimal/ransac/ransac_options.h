@@ -26,7 +26,8 @@ struct RansacOptions {
   double threshold_px = kAutoThresholdPx;
   double confidence = 0.9999;  // in (0, 1): probability that a sample of inliers was drawn
   int max_iterations = 10000;  // >= 1
-  // At least so many, since because of noise most samples of inliers give poor hypotheses.
+  // Iterations, at least. Because of noise most samples of inliers give poor hypotheses. Others:
+  // rigel_benchmark --ransac=ablation.
   int min_iterations = 100;  // >= 0
   bool local_optimization = true;
   // Draws from the matches of best score first, if they have scores.
@@ -40,15 +41,16 @@ struct RansacOptions {
   // Number of hypotheses that are locally optimized after the loop: those that score best at a
   // loose threshold and differ from one another and from the best. They help if the prior has an
   // error. Then no minimal hypothesis fits well at the threshold, and the one that fits best may be
-  // far from the truth. 0 to kMaxFinalists.
+  // far from the truth. 0 to kMaxFinalists. Others: rigel_benchmark --ransac=ablation.
   int num_finalists = 4;
   // If there are more matches, hypotheses are scored on so many, drawn evenly over their order.
   // They separate good and bad hypotheses as well as all matches do, and bound the time. Samples
-  // are drawn from all matches.
+  // are drawn from all matches. Fewer: rigel_benchmark --ransac=ablation.
   int max_scored = 4096;  // >= 1
-  // Bound of the work, microseconds of one core of 2020. The work is counted, not timed, so the
-  // result is the same on every machine. With the defaults only 6pt-stewenius, and rigs with
-  // thousands of camera pairs, reach it before max_iterations.
+  // Bound of the work, microseconds of one core of 2020: a frame pair takes a second or two at
+  // most. The work is counted, not timed, so the result is the same on every machine. With the
+  // defaults only 6pt-stewenius, and rigs with thousands of camera pairs, reach it before
+  // max_iterations (rigel_benchmark --ransac=hostile).
   double max_work_us = 1.5e6;  // > 0; may be infinite
   uint64_t seed = 1;
 

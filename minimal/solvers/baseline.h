@@ -10,6 +10,10 @@
 
 namespace rigel {
 
+// 1/m, of w of the homogeneous baseline (direction, w) relative to the direction. A smaller one is
+// rounding, and the length of t is not determined.
+inline constexpr double kNoScale = 1e-12;
+
 // t = b + s_j - R s_i for R = R_y(a), c = cos a, s = sin a. It takes the components of b: if they
 // were stored one at a time, a load of the whole vector would have to wait for these stores.
 inline Eigen::Vector3d TranslationOfBaseline(const PreparedMatch& reference, double c, double s,

@@ -12,7 +12,7 @@ namespace {
 // of unit vectors; and w relative to the depths, 1/m, where the length of t is not determined.
 constexpr double kZeroHeight = 1e-12;
 constexpr double kZeroEntry = 1e-12;
-constexpr double kNoScale = 1e-12;
+constexpr double kNoDepthScale = 1e-12;
 
 // sin(a) / a and (1 - cos a) / a, for small angles by their series, to rounding: no division, and
 // faster than std::sin.
@@ -262,7 +262,8 @@ void DepthSystem<kModel>::AddSolution(const PreparedMatches& matches, double z,
   const double by = v[1] * x2[1] - v[0] * x1[1];
   const double bz = v[1] * x2[2] - v[0] * (c * x1[2] - s * x1[0]);
   const double depth = std::abs(v[0]) + std::abs(v[1]);
-  const bool has_scale = std::abs(v[2]) > kNoScale * depth && (!deflated_ || std::abs(z) > kNoTurn);
+  const bool has_scale =
+      std::abs(v[2]) > kNoDepthScale * depth && (!deflated_ || std::abs(z) > kNoTurn);
 
   Eigen::Vector3d t;
   if (has_scale && deflated_) {

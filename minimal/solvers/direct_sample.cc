@@ -12,9 +12,6 @@ namespace {
 
 using laplace::Pair;
 
-// Relative to the direction: a w below this is rounding, and the length of t is not determined.
-constexpr double kNoScale = 1e-12;
-
 // The null vector of a 4x4 matrix of rank 3 with the columns x, y, z and k; of a matrix that is
 // almost singular, almost the singular vector of its least singular value, that is adj adj' e for
 // any e that is not orthogonal to it: all four rows have a say, by their size. Zero if the rank is

@@ -120,10 +120,11 @@ double SolveFiveByFive(double (*M)[6], double* d) {
 // leaves an error above 1e-7 rad in one motion of a hundred.
 void Refine(const Eigen::Vector3d* x1, const Eigen::Vector3d* x2, Eigen::Matrix3d* R,
             Eigen::Vector3d* b) {
-  // Each squares the error: from 1e-3, which no root of the polynomial has, to rounding.
+  // Each step squares the error. Three take an error of 1e-3 to rounding; those of the polynomial's
+  // roots are smaller.
   constexpr int kMaxSteps = 3;
   constexpr double kSolved = 1e-13;  // of a constraint, whose vectors have unit length: rounding
-  // Radians. A step that is not small comes of a double root: the start is as good.
+  // Radians. Larger steps occur at double roots. Then the start is as good.
   constexpr double kMaxStep = 0.1;
   for (int step = 0; step < kMaxSteps; ++step) {
     const Eigen::Matrix<double, 3, 2> T = TangentBasis(*b);

@@ -17,7 +17,7 @@ constexpr double kZeroByStructure = 1e-10;
 // A motion of a millionth of the rig's size is no motion.
 constexpr double kNoMotion = 1e-6;
 // How far rounding moves the multiple root of a pure translation, radians.
-constexpr double kNoRotation = 1e-4;
+constexpr double kNearIdentity = 1e-4;
 // Of the entries of R, and of t relative to 1 m and |t|: solutions that differ by less are one
 // root, found twice.
 constexpr double kDuplicate = 1e-9;
@@ -73,7 +73,7 @@ void SixPointSystem::Add(const Eigen::Matrix3d& R, const Eigen::Vector4d& v) {
       largest = std::max(largest, Baseline(solution, pair->ray1.s, pair->ray2.s).norm());
     }
     if (!(largest > kNoMotion * spread_)) return;
-    if (pure_translation_ && RotationError(Eigen::Matrix3d::Identity(), R) < kNoRotation) return;
+    if (pure_translation_ && RotationError(Eigen::Matrix3d::Identity(), R) < kNearIdentity) return;
   } else {
     solution.t = v.head<3>().normalized();
     int votes = 0;

@@ -4,9 +4,9 @@
 // b2: n = R x_i x x_j, k = x_j'R q_i + q_j'R x_i). Six of them have a solution where the 6 x 4
 // matrix M(r) has rank 3: its fifteen 4 x 4 minors, quartics in r, vanish. They have 20 common
 // roots. Source: Ventura, Arth, Lepetit, "An Efficient Minimal Solution for Multi-Camera Motion",
-// ICCV 2015. There a polynomial of degree 20 in one unknown is expanded; here the
-// quartics give all fifteen monomials of degree 4 in terms of the twenty lower ones, which is
-// multiplication by one unknown as a 20 x 20 matrix, whose characteristic polynomial is that
+// ICCV 2015. The paper expands a polynomial of degree 20 in one unknown. Here the quartics are
+// solved for the fifteen monomials of degree 4 in terms of the twenty lower ones. That gives the
+// multiplication by one unknown as a 20 x 20 matrix. Its characteristic polynomial is the paper's
 // polynomial.
 //
 // Each root is polished by Newton's method on M(r) (t, w)' = 0; R is rebuilt as the exact rotation

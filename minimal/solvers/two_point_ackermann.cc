@@ -10,8 +10,6 @@ namespace {
 
 // Metres: coefficients of k that sum to less are rounding.
 constexpr double kZeroMoments = 1e-12;
-// Of |tau|, 1/m: a w below this is rounding, and tau is not determined.
-constexpr double kNoScale = 1e-12;
 
 // Two matches as tau e(z) + k(z) = 0, z = tan(a/2).
 class AckermannSample {

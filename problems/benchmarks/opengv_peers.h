@@ -29,9 +29,9 @@ struct OpenGvEstimate {
   double refine_ms = 0.0;
 };
 
-// OpenGV's RANSAC over the peer of that name, with the same confidence and bound on iterations as
-// RansacOptions' and the threshold as the angle that it is for the pair's first camera, then its
-// nonlinear refinement over the inliers. False if it finds nothing or there is no such peer.
+// OpenGV's RANSAC with the peer of that name, then OpenGV's nonlinear refinement of the inliers.
+// Confidence and iterations are those of `options`. The threshold is an angle in OpenGV: that of
+// threshold_px at the first camera of the pair. False if it finds nothing or there is no such peer.
 bool EstimateWithOpenGv(const std::string& peer, const RansacOptions& options,
                         const FramePair& pair, OpenGvEstimate* estimate);
 

@@ -26,7 +26,11 @@ const std::vector<Variant>& Variants() {
       {"default", [](EstimateOptions*) {}},
       {"no LO, no finalists", [](EstimateOptions* o) { o->ransac.local_optimization = false; }},
       {"no finalists", [](EstimateOptions* o) { o->ransac.num_finalists = 0; }},
+      {"2 finalists", [](EstimateOptions* o) { o->ransac.num_finalists = 2; }},
+      {"8 finalists", [](EstimateOptions* o) { o->ransac.num_finalists = 8; }},
       {"min_iterations 1", [](EstimateOptions* o) { o->ransac.min_iterations = 1; }},
+      {"min_iterations 400", [](EstimateOptions* o) { o->ransac.min_iterations = 400; }},
+      {"max_scored 256", [](EstimateOptions* o) { o->ransac.max_scored = 256; }},
       {"no PROSAC", [](EstimateOptions* o) { o->ransac.prosac = false; }},
       {"no early termination", [](EstimateOptions* o) { o->ransac.early_termination = false; }},
       {"no bail-out test", [](EstimateOptions* o) { o->ransac.bail_out = false; }},
@@ -102,8 +106,10 @@ Tasks OutlierTasks(const RansacTask& base, const std::vector<std::string>& solve
 }
 
 Tasks AblationTasks(const RansacTask& base, const std::vector<std::string>& solvers) {
+  // Of the matches: an easy case, and one where RANSAC needs thousands of samples.
+  constexpr double kOutlierShares[] = {0.3, 0.7};
   Tasks tasks;
-  for (const double share : {0.3, 0.7}) {
+  for (const double share : kOutlierShares) {
     for (const std::string& solver : solvers) {
       for (const Variant& variant : Variants()) {
         RansacTask task = WithSolver(base, solver);

@@ -17,6 +17,7 @@
 #include "rigel/core/random.h"
 #include "rigel/core/statistics.h"
 #include "rigel/minimal/ransac/sampler.h"
+#include "rigel/problems/evaluation/paper_figures.h"
 #include "rigel/problems/io/report_json.h"
 #include "rigel/problems/io/table.h"
 #include "rigel/problems/scenes/synthetic.h"
@@ -256,25 +257,19 @@ std::vector<SolverBenchmarkRow> BenchmarkSolver(const SolverInfo& solver,
 }
 
 std::string PaperTable1(const std::vector<SolverBenchmarkRow>& rows) {
-  constexpr struct {
-    const char* solver;
-    double mean_us;
-    double median_us;
-  } kPaper[] = {{"17pt-li", 50.2704, 48},        {"6pt-stewenius", 3759.8892, 3744},
-                {"6pt-ventura", 57.4035, 53},    {"4pt-lee", 28.0242, 27},
-                {"4pt-liu", 8.2684, 7},          {"4pt-approx", 16.2423, 10},
-                {"4pt-axis-approx", 13.6533, 8}, {"3pt-approx", 18.6852, 12}};
   Table table;
   table.AddHeader({"Table 1 of the paper, us", "paper", "", "here", "", "times"});
   table.AddHeader({"mean and median", "mean", "median", "mean", "median", "faster"});
   bool any = false;
-  for (const auto& entry : kPaper) {
+  for (const std::string_view solver : PaperSolvers()) {
+    const double mean_us = *PaperFigure(PaperTable::kCallMeanUs, solver, "all");
+    const double median_us = *PaperFigure(PaperTable::kCallMedianUs, solver, "all");
     for (const SolverBenchmarkRow& row : rows) {
-      if (row.solver != entry.solver || row.matches != "intra" || !(row.median_us > 0)) continue;
+      if (row.solver != solver || row.matches != "intra" || !(row.median_us > 0)) continue;
       any = true;
-      table.AddRow({row.solver, FormatNumber(entry.mean_us, 2), FormatNumber(entry.median_us, 0),
+      table.AddRow({row.solver, FormatNumber(mean_us, 2), FormatNumber(median_us, 0),
                     FormatNumber(row.mean_us, 3), FormatNumber(row.median_us, 3),
-                    FormatNumber(entry.median_us / row.median_us, 0)});
+                    FormatNumber(median_us / row.median_us, 0)});
     }
   }
   if (!any) return "";

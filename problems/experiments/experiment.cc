@@ -15,6 +15,12 @@ constexpr double kThresholdFloorPx = 0.5;
 // Sigmas of the image noise: nearly all inliers are within three.
 constexpr double kThresholdSigmas = 3.0;
 
+// These stand in for the loop of the paper: a common confidence, and hypotheses that bound its time
+// (docs/experiments.md).
+constexpr double kPaperConfidence = 0.99;
+constexpr int kPaperMinIterations = 100;
+constexpr int kPaperMaxIterations = 1000;
+
 struct Run {
   std::string solver, loop;
   const ExperimentRow* known = nullptr;  // measured at another point already
@@ -43,9 +49,9 @@ EstimateOptions ExperimentEstimate(const std::string& solver, const std::string&
   options.ransac.threshold_px = std::max(kThresholdFloorPx, kThresholdSigmas * noise_px);
   if (loop == kPaperLoop) {
     options.ransac.score = ScoreKind::kInlierCount;
-    options.ransac.confidence = 0.99;
-    options.ransac.min_iterations = 100;
-    options.ransac.max_iterations = 1000;
+    options.ransac.confidence = kPaperConfidence;
+    options.ransac.min_iterations = kPaperMinIterations;
+    options.ransac.max_iterations = kPaperMaxIterations;
     options.ransac.local_optimization = false;
     options.ransac.num_finalists = 0;
     options.ransac.prosac = false;

@@ -108,7 +108,7 @@ ImageCamera ParseCamera(const YAML::Node& sensor) {
 }
 
 bool ReadSensor(const std::string& path, ImageCamera* camera, std::string* error) {
-  constexpr size_t kMaxBytes = size_t{1} << 20;  // of which EuRoC's has one in a thousand
+  constexpr size_t kMaxBytes = size_t{1} << 20;  // EuRoC's files have about 1000 bytes
   InputBytes bytes;
   if (!ReadInputFile(path, &bytes, error, kMaxBytes)) return false;
   std::string_view text = bytes.text();

@@ -126,7 +126,7 @@ bool ReadTimes(const std::string& path, std::vector<double>* times, std::string*
 
 // The cameras' folders beside those that are used; empty if there are none.
 std::string Unused(const fs::path& directory, const std::array<int, 2>& used) {
-  constexpr int kCameras = 10;  // of which a folder may be named
+  constexpr int kCameras = 10;  // image_0 to image_9 are looked for; KITTI has four
   std::string names;
   for (int k = 0; k < kCameras; ++k) {
     const std::string name = "image_" + std::to_string(k);

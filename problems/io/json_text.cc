@@ -4,6 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "rigel/problems/io/printable.h"
+
 namespace rigel {
 namespace {
 
@@ -49,11 +51,7 @@ nlohmann::ordered_json ParseJson(std::string_view text) {
 
 std::string QuoteJson(const nlohmann::ordered_json& value) {
   if (value.is_structured()) return std::string("an ") + value.type_name();
-  // Bytes: enough to know it again, and the message stays a line.
-  constexpr size_t kMaxLength = 30;
-  std::string text = value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  if (text.size() > kMaxLength) text = text.substr(0, kMaxLength) + "...";
-  return "'" + text + "'";
+  return Quoted(value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 int JsonInteger(const nlohmann::ordered_json& value, int min) {

@@ -55,7 +55,6 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${build} -G ${rigel_CMAKE_G
     -DCMAKE_CXX_COMPILER=${rigel_CMAKE_CXX_COMPILER}
     -DCMAKE_CXX_FLAGS=${rigel_CMAKE_CXX_FLAGS}
     -DCMAKE_BUILD_TYPE=${RIGEL_CONFIG}
-    -DRIGEL_README=${CMAKE_CURRENT_LIST_DIR}/../../README.md
     -DCMAKE_RUNTIME_OUTPUT_DIRECTORY=${build}/bin
     -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
     "-DCMAKE_PREFIX_PATH=${prefix}\;${rigel_CMAKE_PREFIX_PATH}"
@@ -71,18 +70,6 @@ message(STATUS "${output}")
 run(${CMAKE_CTEST_COMMAND} --test-dir ${build}/examples --build-config ${RIGEL_CONFIG} --no-tests=error
     --output-on-failure)
 message(STATUS "${output}")
-
-# Every C++ example of the README, each of which must end with 0.
-file(GLOB examples ${build}/readme_example_*.cc)
-if(NOT examples)
-  message(FATAL_ERROR "no example of the README was compiled")
-endif()
-foreach(source IN LISTS examples)
-  get_filename_component(name ${source} NAME_WE)
-  find_program(${name} ${name} PATHS ${build}/bin ${build}/bin/${RIGEL_CONFIG} NO_DEFAULT_PATH REQUIRED)
-  run(${${name}})
-  message(STATUS "${name}: ${output}")
-endforeach()
 
 # A program compiled with other flags than the library, by each compiler there is.
 file(READ /proc/cpuinfo cpu_flags LIMIT 20000)

@@ -33,6 +33,9 @@ SOLVERS = {"planar-image-noise": ["17pt-li", "6pt-stewenius", "2pt-choi", "3pt-a
            "kitti-motions": GROUPS["6-DoF"] + GROUPS["4-point"] + ["3pt-approx"]}
 
 
+PAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../docs/claims.md")
+
+
 def general(solver):
     return solver.startswith(("17pt", "6pt"))
 
@@ -288,9 +291,10 @@ class Program(unittest.TestCase):
         self.assertEqual(report["format"], "rigel-claims 1")
         self.assertRegex(report["rigel_version"], r"^\d+\.\d+\.\d+$")
         lines = self.read("claims.md").splitlines()
-        self.assertEqual(len(lines), 8 + len(report["claims"]), "a line a claim below the head")
-        self.assertIn("(kitti-motions: every 2nd motion, seed 1; outliers: 7 pairs a point, the "
-                      "coarse grid of --quick, seed 1)", lines[4])
+        head = lines.index(rigel_claims.TABLE_HEAD[0])
+        self.assertEqual(len(lines), head + 2 + len(report["claims"]), "a line a claim")
+        self.assertIn("- `kitti-motions`: every 2nd motion, seed 1", lines[:head])
+        self.assertIn("- `outliers`: 7 pairs a point, the coarse grid of --quick, seed 1", lines[:head])
         said = [line for line in run.stdout.splitlines() if not line.startswith(" ")]
         self.assertEqual([line[:15].strip() for line in said],
                          [claim["verdict"] for claim in report["claims"]])
@@ -362,6 +366,14 @@ class Program(unittest.TestCase):
             rigel_claims.judge(CLAIMS, GROUPS, UNITS, results)
             refused += not results
         self.assertTrue(0 < refused < 300, refused)
+
+    def test_the_page_is_of_this_script(self):
+        with open(PAGE, encoding="utf-8") as file:
+            lines = file.read().splitlines()
+        self.assertEqual(lines[0], rigel_claims.FIRST_LINE)
+        head = lines.index(rigel_claims.TABLE_HEAD[0])
+        self.assertEqual(lines[head + 1], rigel_claims.TABLE_HEAD[1])
+        self.assertEqual(lines[head - 5:head - 1], rigel_claims.about({})[-4:])
 
     def test_missing_values_of_any_kind_are_no_cases(self):
         source = random.Random(2)

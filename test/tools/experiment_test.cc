@@ -102,7 +102,7 @@ TEST_F(ExperimentTest, ClaimsAreOfAllResultsInTheDirectory) {
   const std::string out = "--output=" + Path("a");
   ASSERT_EXIT_CODE(Experiment({"--name=inter-share", "--quick", "--pairs=2", "--no_times", out}),
                    0);
-  EXPECT_THAT(ReadText(Path("a/claims.md")), Not(HasSubstr("kitti-motions:")));
+  EXPECT_THAT(ReadText(Path("a/claims.md")), Not(HasSubstr("kitti-motions")));
   WriteText(Path("a/outliers.json"), "[]");
   const Outcome run =
       Experiment({"--name=rotation-angle", "--quick", "--pairs=3", "--no_times", out});
@@ -112,8 +112,8 @@ TEST_F(ExperimentTest, ClaimsAreOfAllResultsInTheDirectory) {
   EXPECT_THAT(
       claims,
       AllOf(HasSubstr("| inter-share |"), HasSubstr("| rotation-angle |"),
-            HasSubstr("inter-share: 2 pairs a point, the coarse grid of --quick, seed 1"),
-            HasSubstr("rotation-angle: 3 pairs a point"), Not(HasSubstr("kitti-motions:"))));
+            HasSubstr("`inter-share`: 2 pairs a point, the coarse grid of --quick, seed 1"),
+            HasSubstr("`rotation-angle`: 3 pairs a point"), Not(HasSubstr("kitti-motions"))));
   EXPECT_THAT(ReadText(Path("a/claims.json")), HasSubstr("inter-share"));
   // Read from the file it says what it said before.
   ASSERT_EXIT_CODE(
@@ -253,7 +253,7 @@ TEST_F(ExperimentTest, KittiMotionsHasARowADrive) {
     EXPECT_TRUE(row.contains("time_ms"));
   }
   EXPECT_THAT(drives, testing::ElementsAre("03", "04"));
-  EXPECT_THAT(ReadText(Path("a/claims.md")), HasSubstr("kitti-motions: every 4th motion, seed 1"));
+  EXPECT_THAT(ReadText(Path("a/claims.md")), HasSubstr("`kitti-motions`: every 4th motion, seed 1"));
   EXPECT_THAT(ReadText(Path("a/claims.md")), HasSubstr("4pt-axis-approx is the fastest"));
   EXPECT_THAT(ReadText(Path("a/claims.md")), Not(HasSubstr("not measured")));
 }
