@@ -8,6 +8,11 @@
 # many cores as CMAKE_BUILD_PARALLEL_LEVEL says. Exit code 0: all tests pass and the inliers are the same.
 set -euo pipefail
 
+if [[ ${1-} == -h || ${1-} == --help ]]; then
+  sed -n '2,/^set /{/^set /!s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+  exit 0
+fi
+
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 arm=$root/build/arm64
 host=$root/build/arm64_host

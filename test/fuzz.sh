@@ -7,6 +7,11 @@
 # seconds of each target; exits with 1 and names the input if one crashes, leaks or takes more than 5 seconds.
 set -euo pipefail
 
+if [[ ${1-} == -h || ${1-} == --help ]]; then
+  sed -n '2,/^set /{/^set /!s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+  exit 0
+fi
+
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build/fuzz
 seconds=${1:?seconds in total}

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """Kills programs at random moments and looks at what the next run makes of it.
 
-  RIGEL_BUILD_DIR=build/release test/kill_study.py [--kills=30] [--seed=1] [TOOL ...]
+  test/kill_study.py [--kills=30] [--seed=1] [TOOL ...]
 
 Each of rigel_experiment, rigel_match, rigel_calibrate_prior --in_place and rigel_compare is killed
 (SIGKILL) at that many moments, drawn uniformly from the time that it takes, and at as many within
 3 ms after its first temporary file is seen. The next run must end with code 0, leave no file that
 an undisturbed run does not leave, and each file the same to the last byte. Only kills that found
 the program at work count.
+
+The build is $RIGEL_BUILD_DIR, by default build/release.
 
 Exit code: 0 all as it should be, 1 not, 77 there are no programs.
 """
@@ -22,7 +24,8 @@ import tempfile
 import time
 import zlib
 
-BUILD = os.environ.get("RIGEL_BUILD_DIR", "build/release")
+BUILD = os.environ.get("RIGEL_BUILD_DIR") or os.path.join(
+    os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "build", "release")
 
 
 def program(name):

@@ -97,6 +97,9 @@ def named_files(root, path, headers):
 
 
 def main():
+  if sys.argv[1:] in (["-h"], ["--help"]):
+    print(__doc__)
+    sys.exit(0)
   root = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
   pages = 0
   findings = []

@@ -2,13 +2,18 @@
 # Runs the GNU parallel lines of docs/batch.md as they are printed there, in a directory with match
 # files in DIR that state no prior, and compares the merged report with that of one run.
 #
-#   test/parallel_line.sh [BUILD_DIR]
+#   test/parallel_line.sh
 #
-# The build directory is $RIGEL_BUILD_DIR or build/release by default. Exit code 77 without parallel.
+# The build is $RIGEL_BUILD_DIR, by default build/release. Exit code 77 without parallel.
 set -euo pipefail
 
+if [[ ${1-} == -h || ${1-} == --help ]]; then
+  sed -n '2,/^set /{/^set /!s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+  exit 0
+fi
+
 root=$(cd "$(dirname "$0")/.." && pwd)
-build=${1:-${RIGEL_BUILD_DIR:-$root/build/release}}
+build=${RIGEL_BUILD_DIR:-$root/build/release}
 command -v parallel >/dev/null || {
   echo "parallel_line: GNU parallel is missing (Debian: apt install parallel)" >&2
   exit 77

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Whether rigel_calibrate_prior finds what was put in, and what the planar solver gains by it.
 
-    test/prior_calibration_study.py [BUILD_DIR]
+    test/prior_calibration_study.py
 
 Simulated clips whose normal and gravity lines are turned by 2 degrees: error of the calibration
 against its stated standard deviation. With RIGEL_REAL_DATA set, also: the same on the recorded
 motion of KITTI 00 (simulated points), and raw errors of 3pt on the real clips before (--prior=body)
 and after. Prints what it measures; exit code 1 if on more than one simulated clip in ten an error
-is beyond three standard deviations. Python's standard library only.
+is beyond three standard deviations. The build is $RIGEL_BUILD_DIR, by default build/release. Python's standard library only.
 """
 import json
 import math
@@ -19,7 +19,7 @@ import tempfile
 TURN_DEG = (1.2, 0.0, 1.6)  # rotation vector, 2 degrees
 SEEDS = 20
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-BIN = os.path.join(sys.argv[1] if len(sys.argv) > 1 else os.path.join(ROOT, "build", "release"), "bin")
+BIN = os.path.join(os.environ.get("RIGEL_BUILD_DIR") or os.path.join(ROOT, "build", "release"), "bin")
 
 
 def run(tool, *args):
@@ -131,6 +131,9 @@ def real(work, data):
 
 
 def main():
+    if len(sys.argv) > 1:
+        print(__doc__)
+        sys.exit(0 if sys.argv[1] in ("-h", "--help") else 2)
     with tempfile.TemporaryDirectory() as work:
         good = simulated(work)
         data = os.environ.get("RIGEL_REAL_DATA")

@@ -1,11 +1,20 @@
 #!/usr/bin/env bash
 # Measures the refinement against the Cramer-Rao bound and writes docs/refinement_tables.md (five
-# minutes on two cores): test/refinement_study.sh [BUILD_DIR [PAIRS]]
+# minutes on two cores).
+#
+#   test/refinement_study.sh [PAIRS]
+#
+# The build is $RIGEL_BUILD_DIR, by default build/release.
 set -euo pipefail
 
+if [[ ${1-} == -h || ${1-} == --help ]]; then
+  sed -n '2,/^set /{/^set /!s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+  exit 0
+fi
+
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-bin=$(cd "${1:-$root/build/release}/bin" && pwd)
-pairs=${2:-500}
+bin=$(cd "${RIGEL_BUILD_DIR:-$root/build/release}/bin" && pwd)
+pairs=${1:-500}
 out=$root/docs/refinement_tables.md
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

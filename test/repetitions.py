@@ -84,6 +84,9 @@ def check_itself():
 
 
 def main():
+  if sys.argv[1:] in (["-h"], ["--help"]):
+    print(__doc__)
+    sys.exit(0)
   root = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
   texts = {}
   for path in source_files(root):

@@ -2,13 +2,18 @@
 # Runs the Slurm jobs of docs/batch.md as they are printed there, on the Slurm that SLURM_CONF names: all that is changed are
 # the match files, four tasks instead of 16 and one processor instead of 8. The merged report has to be that of one run.
 #
-#   SLURM_CONF=DIR/slurm.conf test/slurm_example.sh [BUILD_DIR]
+#   SLURM_CONF=DIR/slurm.conf test/slurm_example.sh
 #
-# The build directory is $RIGEL_BUILD_DIR or build/release by default. Exit code 77 without a Slurm.
+# The build is $RIGEL_BUILD_DIR, by default build/release. Exit code 77 without a Slurm.
 set -euo pipefail
 
+if [[ ${1-} == -h || ${1-} == --help ]]; then
+  sed -n '2,/^set /{/^set /!s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+  exit 0
+fi
+
 root=$(cd "$(dirname "$0")/.." && pwd)
-build=$(cd "${1:-${RIGEL_BUILD_DIR:-$root/build/release}}" && pwd)
+build=$(cd "${RIGEL_BUILD_DIR:-$root/build/release}" && pwd)
 if [[ -z ${SLURM_CONF:-} ]] || ! command -v sbatch >/dev/null || ! sinfo -h >/dev/null; then
   echo "slurm_example: SLURM_CONF names no Slurm that runs" >&2
   exit 77

@@ -1,12 +1,20 @@
 #!/usr/bin/env bash
 # Measures which solver wins where and writes docs/solver_choice.md (some minutes on two cores; with the
-# real set where RIGEL_REAL_DATA names the folder of real data):
-# test/solver_choice_study.sh [BUILD_DIR [PAIRS]]
+# real set where RIGEL_REAL_DATA names the folder of real data).
+#
+#   test/solver_choice_study.sh [PAIRS]
+#
+# The build is $RIGEL_BUILD_DIR, by default build/release.
 set -euo pipefail
 
+if [[ ${1-} == -h || ${1-} == --help ]]; then
+  sed -n '2,/^set /{/^set /!s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+  exit 0
+fi
+
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-bin=$(cd "${1:-$root/build/release}/bin" && pwd)
-pairs=${2:-100}
+bin=$(cd "${RIGEL_BUILD_DIR:-$root/build/release}/bin" && pwd)
+pairs=${1:-100}
 out=$root/docs/solver_choice.md
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

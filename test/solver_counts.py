@@ -3,7 +3,7 @@
 
   cmake --preset release -B build/counts -DCMAKE_CXX_FLAGS=-g
   cmake --build build/counts --target kernels_benchmark
-  test/solver_counts.py build/counts/bin/kernels_benchmark [solver...]
+  RIGEL_BUILD_DIR=build/counts test/solver_counts.py [solver...]
 
 Needs valgrind, objdump, addr2line and Google Benchmark. Callgrind counts how often each instruction
 runs between the call of a solver and its return, on the intra-camera samples of kernels_benchmark.
@@ -110,11 +110,18 @@ def steps_of(program, addresses):
 
 
 def main():
-    program = sys.argv[1]
+    if any(argument.startswith('-') for argument in sys.argv[1:]):
+        print(__doc__)
+        sys.exit(0 if sys.argv[1] in ('-h', '--help') else 2)
+    root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    build = os.environ.get('RIGEL_BUILD_DIR') or os.path.join(root, 'build', 'release')
+    program = os.path.join(build, 'bin', 'kernels_benchmark')
+    if not os.path.exists(program):
+        sys.exit(f'solver_counts: there is no {program}')
     code, starts = disassembly(program)
     print('                        instruc-  flops     adds     muls   divs  sqrts '
           ' set-up  elimin.  roots motions other')
-    for name in sys.argv[2:] or SOLVERS:
+    for name in sys.argv[1:] or SOLVERS:
         function = 'rigel::' + SOLVERS[name]
         if '(' not in function:
             function += '('

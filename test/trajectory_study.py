@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """Drift of rigel_estimate's trajectory against that of the stereo odometry in the same files.
 
-    test/trajectory_study.py [DIRECTORY [BUILD_DIR]]
+    test/trajectory_study.py [DIRECTORY]
 
-The directory is a clip's, by default $RIGEL_REAL_DATA/kitti_stereo_06 (exit code 77 without it),
-the build directory $RIGEL_BUILD_DIR or build/release. Chains the `stereo_odometry` comments and
+The directory is a clip's, by default $RIGEL_REAL_DATA/kitti_stereo_06 (exit code 77 without it).
+The build is $RIGEL_BUILD_DIR, by default build/release. Chains the `stereo_odometry` comments and
 the `truth` lines of its match files by its own code, has rigel_estimate write the refined
 trajectory (KITTI and TUM), reads both as evo does, and compares the errors of the motion over the
-whole clip, X_last = R X_first + t: of t over the length of the path, and of R. Exit code 0 if the refined one's are at most 1.2 times those of the stereo odometry;
-1 if not, or if something is wrong. Printed, not judged: the same of the inverse motion, the last
+whole clip, X_last = R X_first + t: of t over the length of the path, and of R. Exit code 0 if the
+refined one's are at most 1.2 times those of the stereo odometry; 1 if not, or if something is wrong. Printed, not judged: the same of the inverse motion, the last
 pose in the first frame, where the truth's error at the first frame counts by the whole length.
 Python's standard library only.
 """
@@ -122,7 +122,10 @@ def end_error(truth, poses):
 
 
 def main():
-    if len(sys.argv) > 3:
+    if sys.argv[1:] in (["-h"], ["--help"]):
+        print(__doc__)
+        sys.exit(0)
+    if len(sys.argv) > 2:
         print(__doc__, file=sys.stderr)
         sys.exit(2)
     if len(sys.argv) == 1 and not os.environ.get("RIGEL_REAL_DATA"):
@@ -130,7 +133,7 @@ def main():
         sys.exit(77)
     directory = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.environ["RIGEL_REAL_DATA"],
                                                                    "kitti_stereo_06")
-    build = sys.argv[2] if len(sys.argv) == 3 else os.environ.get("RIGEL_BUILD_DIR") or os.path.join(
+    build = os.environ.get("RIGEL_BUILD_DIR") or os.path.join(
         os.path.dirname(os.path.abspath(__file__)), "..", "build", "release")
     files = sorted(os.path.join(directory, f) for f in os.listdir(directory) if f.endswith(".matches"))
     motions = [read_motions(f) for f in files]

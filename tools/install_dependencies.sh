@@ -4,6 +4,10 @@
 #   tools/install_dependencies.sh [PACKAGE ...]
 set -euo pipefail
 
+if [[ ${1-} == -h || ${1-} == --help ]]; then
+  echo "usage: install_dependencies.sh [PACKAGE ...]"
+  exit 0
+fi
 packages=(
   cmake g++ ninja-build
   libceres-dev libeigen3-dev libgoogle-glog-dev libgflags-dev nlohmann-json3-dev zlib1g-dev

@@ -7,6 +7,10 @@
 # looked up there, in /usr/share/doc/PACKAGE/copyright, before it is taken to bind the library.
 set -euo pipefail
 
+if [[ ${1-} == -h || ${1-} == --help ]]; then
+  echo "usage: list_licences.sh PROGRAM ..."
+  exit 0
+fi
 if [[ $# -eq 0 ]]; then
   echo "usage: list_licences.sh PROGRAM ..." >&2
   exit 2

@@ -57,4 +57,4 @@ else
 fi
 
 say "comparing the solvers on $matches"
-exec "$build/bin/rigel_compare" --matches="$matches"
+exec "$build/bin/rigel_compare" --matches="$matches" --solvers=4pt-approx,4pt,17pt-li,6pt-ventura,5pt+1

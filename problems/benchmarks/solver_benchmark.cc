@@ -268,7 +268,7 @@ std::string PaperTable1(const std::vector<SolverBenchmarkRow>& rows) {
       if (row.solver != solver || row.matches != "intra" || !(row.median_us > 0)) continue;
       any = true;
       table.AddRow({row.solver, FormatNumber(mean_us, 2), FormatNumber(median_us, 0),
-                    FormatNumber(row.mean_us, 3), FormatNumber(row.median_us, 3),
+                    FormatFitted(row.mean_us, 3, 5), FormatFitted(row.median_us, 3, 5),
                     FormatNumber(median_us / row.median_us, 0)});
     }
   }
@@ -285,7 +285,7 @@ std::string SolverBenchmarkTable(const std::vector<SolverBenchmarkRow>& rows) {
   for (const SolverBenchmarkRow& row : rows) {
     // The widths given keep it to 100 columns with the longest solver name.
     table.AddRow({row.solver, row.matches, " " + FormatFitted(row.mean_us, 3, 5),
-                  FormatFitted(row.median_us, 3, 6), FormatFitted(row.spread_us, 3, 6),
+                  FormatFitted(row.median_us, 3, 5), FormatFitted(row.spread_us, 3, 5),
                   FormatFitted(row.ratio, 2, 5), " " + FormatNumber(row.solutions, 2),
                   FormatNumber(row.failures, 3), FormatNumber(row.found_truth, 4),
                   " " + FormatNumber(row.rotation_deg, 5),
