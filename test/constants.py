@@ -8,6 +8,10 @@ static or inline, of a name kLikeThis and a value with a number in it. Fails, wi
 without a comment of at least four words: on its own lines, in the comment lines right above it, or both together. The
 unit alone is no reason. That what the comment says is true, a reader has to judge.
 A comment above covers the constants that follow it line by line if it has the word "these" or "both".
+Fails also on a number without a name in a comparison or a product of decimals, as `x < 0.01` and `1.5 * x`. Allowed are
+0, 0.5, 1 and 2, and in products whole numbers below 10, 0.25 and powers of ten, which formulas and units have. And on a
+member of a public header (docs/api.md) with a number as its default and without such a comment. 0, 1 and members
+num_... need none.
 No comment is asked of a constant that its name and value explain:
   - one without a number: texts, truth values, what others compute;
   - a table with texts in its rows, as of names and columns: each row names itself;
@@ -32,6 +36,11 @@ CONSTANT = re.compile(
     r"(?:\[[^\]]*\])*[ ]*(?:=(?!=)|(?=\{))", flags=re.M)
 NUMBER = re.compile(r"(?<![\w.])(?:0[xX][0-9a-fA-F']+|(?:\d[\d']*\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)[fFuUlL]*")
 TYPE = re.compile(r"\b(?:std::)?(?:size_t|u?int\d*(?:_t)?|double|float|unsigned|long|char)\b")
+
+DECIMAL = r"(?<![\w.])(?:\d+\.\d*(?:[eE][-+]?\d+)?|\d+[eE][-+]?\d+)(?![\w.])"
+COMPARED = re.compile(r"(?:(?<![<>-])[<>]=?[ ]*-?(" + DECIMAL + r")(?![ ]*\*))|(" + DECIMAL + r")[ ]*[<>]=?(?![<>])")
+MULTIPLIED = re.compile(r"\*[ ]*-?(" + DECIMAL + r")|(" + DECIMAL + r")[ ]*\*")
+MEMBER = re.compile(r"^  (?:double|int|size_t|uint64_t)[ ]+(?P<name>[a-z]\w*)[ ]*=[ ]*(?P<value>-?[\d.eE+-]+);", flags=re.M)
 
 
 def source_files(root):
@@ -122,26 +131,73 @@ def check_file(path, text, findings):
   return constants, exempt
 
 
+def is_plain(number, in_product):
+  value = float(number)
+  if value in (0, 0.5, 1, 2):
+    return True
+  return in_product and (value == 0.25 or value < 10 and value.is_integer() or re.fullmatch(r"10*", f"{value:.0f}") or
+                         re.fullmatch(r"1e-\d+", number))
+
+
+def check_bare(path, text, findings):
+  """Comparisons and products with numbers that have no name."""
+  code, _ = split(text)
+  constants = [(match.start(), end_of_statement(code, match.end())) for match in CONSTANT.finditer(code)]
+  for pattern in (COMPARED, MULTIPLIED):
+    for match in pattern.finditer(code):
+      number = match[1] or match[2]
+      if is_plain(number, pattern is MULTIPLIED) or any(begin <= match.start() <= end for begin, end in constants):
+        continue
+      line = code.count("\n", 0, match.start())
+      findings.append(f"{path}:{line + 1}: {number} has no name: {text.splitlines()[line].strip()[:100]}")
+
+
+def check_members(path, text, findings):
+  """Members of a public header with a number as their default."""
+  code, comments = split(text)
+  lines = code.split("\n")
+  for match in MEMBER.finditer(code):
+    if float(match["value"]) in (0, 1, -1) or match["name"].startswith("num_"):
+      continue
+    line = top = code.count("\n", 0, match.start())
+    while top - 1 in comments and not lines[top - 1].strip():
+      top -= 1
+    said = " ".join(comments[i] for i in range(top, line + 1) if i in comments)
+    if len(words(said)) < FEWEST_WORDS:
+      findings.append(f"{path}:{line + 1}: no unit and reason: {match[0].strip()}")
+
+
+def public_headers(root):
+  with open(os.path.join(root, "docs/api.md"), encoding="utf-8") as file:
+    return set(re.findall(r"^\| `([^`]+\.h)` \| \S", file.read(), flags=re.M))
+
+
 def main():
   if sys.argv[1:] in (["-h"], ["--help"]):
     print(__doc__)
     sys.exit(0)
   root = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
-  findings = []
+  findings, bare = [], []
+  public = public_headers(root)
   files = constants = exempt = 0
   for path in source_files(root):
     with open(os.path.join(root, path), encoding="utf-8") as file:
-      counts = check_file(path, file.read(), findings)
+      text = file.read()
+    counts = check_file(path, text, findings)
+    check_bare(path, text, bare)
+    if path in public:
+      check_members(path, text, bare)
     files += 1
     constants += counts[0]
     exempt += counts[1]
   if not constants:
     print(f"{root}: no constant found")
-  for finding in findings:
+  for finding in findings + bare:
     print(finding)
   print(f"{files} files, {constants} constants; {exempt} explain themselves, {constants - exempt - len(findings)} are "
-        f"explained, {len(findings)} are not")
-  sys.exit(1 if findings or not constants else 0)
+        f"explained, {len(findings)} are not; "
+        f"{len(bare)} other findings")
+  sys.exit(1 if findings or bare or not constants else 0)
 
 
 if __name__ == "__main__":

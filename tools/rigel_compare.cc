@@ -162,6 +162,21 @@ void DropTimes(ComparisonReport* report) {
   }
 }
 
+// A line for each solver whose prior no pair states: its rows of the table are empty.
+std::string SolversWithoutPrior(const std::vector<SolverResults>& solvers) {
+  std::string lines;
+  for (const SolverResults& solver : solvers) {
+    const auto no_prior = [](const PairResult& r) {
+      return r.failed && r.message.rfind("the prior has no ", 0) == 0;
+    };
+    if (solver.pairs.empty() || !std::all_of(solver.pairs.begin(), solver.pairs.end(), no_prior)) {
+      continue;
+    }
+    lines += solver.solver + ": " + solver.pairs.front().message + " in any pair; see --prior\n";
+  }
+  return lines;
+}
+
 // Table, JSON and CSV. False with a message on stderr if one cannot be written.
 bool Write(ComparisonReport* report, bool by_sequence) {
   if (!TimesAreGiven()) DropTimes(report);
@@ -170,7 +185,7 @@ bool Write(ComparisonReport* report, bool by_sequence) {
   if (by_sequence && has_pairs && summaries.size() == report->solvers.size()) {
     std::cerr << "--by=sequence: no file names a sequence\n";
   }
-  const std::string table = ComparisonTable(summaries);
+  const std::string table = ComparisonTable(summaries) + SolversWithoutPrior(report->solvers);
   const bool bold = by_sequence && isatty(STDOUT_FILENO) != 0;
   bool ok = PrintTable(bold ? BestInBold(table) : table, Outputs());
   const bool per_pair = FLAGS_per_pair || report->shard.has_value();

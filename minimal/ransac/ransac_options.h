@@ -25,6 +25,7 @@ struct RansacOptions {
   // EstimateMotion() takes this value, and replaces it.
   double threshold_px = kAutoThresholdPx;
   double confidence = 0.9999;  // in (0, 1): probability that a sample of inliers was drawn
+  // Iterations, at most: with 4 matches a sample, enough for 82 percent of outliers.
   int max_iterations = 10000;  // >= 1
   // Iterations, at least. Because of noise most samples of inliers give poor hypotheses. Others:
   // rigel_benchmark --ransac=ablation.

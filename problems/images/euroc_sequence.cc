@@ -93,8 +93,9 @@ ImageCamera ParseCamera(const YAML::Node& sensor) {
                                         "intrinsics: expected positive focal lengths");
   }
   const std::vector<double> size = Numbers(sensor["resolution"], "resolution", 2);
+  constexpr double kMaxSide = 1e6;  // pixels: more is a mistake, and still fits an int
   for (const double pixels : size) {
-    if (!(pixels >= 1 && pixels <= 1e6) || pixels != std::floor(pixels)) {
+    if (!(pixels >= 1 && pixels <= kMaxSide) || pixels != std::floor(pixels)) {
       throw YAML::RepresentationException(sensor["resolution"].Mark(),
                                           "resolution: expected the width and height in pixels");
     }

@@ -11,6 +11,7 @@ namespace {
 using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -317,6 +318,8 @@ TEST_F(CompareTest, PairWithoutThePriorOfItsSolverIsAFailureAndNoError) {
               ElementsAre(AllOf(HasSubstr("000000.matches: 3pt: the prior has no normal"),
                                 HasSubstr("(3 files alike)")),
                           "no pair has a motion"));
+  EXPECT_THAT(RunTool("compare", {"--matches=" + matches, "--solvers=4pt,3pt"}).out,
+              EndsWith("\n3pt: the prior has no normal in any pair; see --prior\n"));
   const Json all = ParseReport(nobody.out)["results"][0];
   EXPECT_THAT(Keys(all),
               UnorderedElementsAre("solver", "sequence", "pairs", "failures", "direction_pairs"));
