@@ -1,10 +1,10 @@
 // Which vector instructions a kernel may use: chosen when the program runs, so that one portable
 // binary takes what the machine has.
 //
-// A kernel is a file of plain loops: an always-inlined body without Eigen or library templates (the
-// linker could pick copies that were compiled with these instructions for the whole program),
-// called from one function a path under RIGEL_TARGET_AVX2. Built with -ffp-contract=off and with
-// sums over a fixed number of lanes, every path gives the same bits.
+// A kernel is a file of plain loops. Its body is always inlined, in one function for each path;
+// that of AVX2 has RIGEL_TARGET_AVX2. The body has no templates of Eigen or the standard library:
+// the linker could take their copies with AVX2 instructions for the whole program. Built with
+// -ffp-contract=off and with sums over a fixed number of lanes, every path gives the same bits.
 #ifndef RIGEL_CORE_CPU_PATH_H_
 #define RIGEL_CORE_CPU_PATH_H_
 

@@ -1,8 +1,8 @@
 // Eigen types that are laid out alike in every program.
 //
-// Eigen aligns a matrix of fixed size to 16, 32 or 64 bytes as the flags of the compiler and its
-// own macros say (-mavx, -march=..., EIGEN_MAX_ALIGN_BYTES), and with it every struct that holds
-// one: a program and the library it links would look for the members in different places. So
+// Eigen aligns a matrix of fixed size to 16, 32 or 64 bytes, and with it every struct that holds
+// one. Which of these depends on flags and macros (-mavx, -march=..., EIGEN_MAX_ALIGN_BYTES). With
+// other flags than the library's, a program would look for the members in other places. So
 // structs and functions that both of them see have these types, or Eigen::Vector3d and Matrix3d,
 // which Eigen never aligns. They turn into Eigen's own types and back by plain assignment.
 #ifndef RIGEL_CORE_EIGEN_TYPES_H_

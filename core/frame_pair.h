@@ -27,10 +27,9 @@ struct FramePair {
   // options.refine.noise_px = pair.noise_px.
   std::optional<double> noise_px;
 
-  // False with a message if the rig or the prior is invalid, a match names a camera that is not
-  // there, a pixel or time is not finite, a column does not fit the matches, the truth is no finite
-  // motion or noise_px is not positive and finite. The score of a match may be NaN: it is then the
-  // worst.
+  // False with a message if the rig, the prior or a column is invalid or a match names a camera
+  // that is not there. Pixels, times, truth and noise_px must be finite, noise_px also positive.
+  // The score of a match may be NaN: it is then the worst.
   bool IsValid(std::string* error) const;
 };
 

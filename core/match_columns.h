@@ -23,9 +23,9 @@ struct MatchColumns {
   std::vector<char> inlier;                  // 1 or 0
   std::vector<std::array<double, 4>> exact;  // u, v, u2, v2 without noise
 
-  // False with a message if a vector has neither no entry nor `num_matches`, or an entry is out of
-  // its range: a number is not finite, a sigma not positive, a depth negative, or the determinant
-  // of an affine frame not positive, other than all zero.
+  // False with a message if a vector is not empty and has not `num_matches` entries, or if an entry
+  // is out of its range. Numbers must be finite, sigmas positive, depths not negative. An affine
+  // frame has a positive determinant, or is all zero.
   bool IsValid(size_t num_matches, std::string* error) const;
 
   // The columns of the matches `rows`, in that order.

@@ -40,9 +40,9 @@ struct GroupMotion {
   double min_sin2 = 0.0;  // of the parallax: below it noise decides the depths
 };
 
-// Adds sum min(r^2, t2) over the matches to `sum` and returns it, where r is the Sampson error in
-// pixels under the row-major centred fundamental matrix F; `num_inliers`, unless null, grows by the
-// number of matches with r^2 < t2. A match with r = 0/0 (F = 0, an epipole) counts t2. Stops once
+// Adds sum min(r^2, t2) over the matches to `sum` and returns it. r is the Sampson error in pixels
+// under the row-major centred fundamental matrix F. `num_inliers`, unless null, grows by the number
+// of matches with r^2 < t2. A match with r = 0/0 (F = 0, an epipole) counts t2. Stops once
 // the sum exceeds `bound`. A sum up to `bound` is complete. One above it is a lower limit of the
 // complete sum, as no term is negative.
 double TruncatedSampsonSum(const PixelArrays& pixels, const double F[9], double t2, double bound,

@@ -2,14 +2,19 @@
 """How long the sentences of a page are.
 
     test/sentences.py [--long=WORDS] [--max_lines=N] [--max_mean=WORDS] PAGE...
+    test/sentences.py --max_words=WORDS FOLDER...
 
 Prints for each Markdown page its lines, its sentences and their mean number of words; with --long also each sentence
 of more words than that. Code, tables, headings and HTML comments are no sentences. A word has a letter or a digit. A
 sentence ends at . ! or ?, at the end of its paragraph or of its list item.
-Exit code 1 if a page has more lines or a larger mean than is allowed, 2 on a wrong call, else 0.
+With --max_words: each sentence of more words in the comments of the headers in these folders and below. Comment lines
+that are indented, as equations and lists, are no sentences.
+Exit code 1 if a page has more lines or a larger mean than is allowed or a sentence more words, 2 on a wrong call, else
+0.
 """
 
 import argparse
+import os
 import re
 import sys
 
@@ -44,13 +49,49 @@ def sentences(text):
         yield words
 
 
+def header_paragraphs(text):
+  found, lines = [], []
+  for line in text.split("\n") + [""]:
+    comment = re.match(r"\s*// ?(\S.*)", line)
+    if comment:
+      lines.append(comment[1].strip())
+    elif lines:
+      found.append(" ".join(lines))
+      lines = []
+  return found
+
+
+def long_sentences(folders, max_words):
+  headers = 0
+  for folder in folders:
+    for where, below, names in os.walk(folder):
+      below.sort()
+      for name in sorted(names):
+        if not name.endswith(".h"):
+          continue
+        headers += 1
+        with open(os.path.join(where, name), encoding="utf-8") as file:
+          found = [words for text in header_paragraphs(file.read()) for words in sentences(text)]
+        for words in found:
+          if len(words) > max_words:
+            yield f"{os.path.join(where, name)}: {len(words)} words: {' '.join(words)}"
+  if headers == 0:
+    yield "no header"
+
+
 def main():
   parser = argparse.ArgumentParser(description=__doc__.split("\n")[0], allow_abbrev=False)
   parser.add_argument("--long", type=int, metavar="WORDS")
   parser.add_argument("--max_lines", type=int, metavar="N")
   parser.add_argument("--max_mean", type=float, metavar="WORDS")
-  parser.add_argument("page", nargs="+")
+  parser.add_argument("--max_words", type=int, metavar="WORDS")
+  parser.add_argument("page", nargs="+", metavar="PAGE or FOLDER")
   arguments = parser.parse_args()
+  if arguments.max_words is not None:
+    found = list(long_sentences(arguments.page, arguments.max_words))
+    for text in found:
+      print(text)
+    return 1 if found else 0
   missed = False
   print("lines sentences  mean  page")
   for page in arguments.page:

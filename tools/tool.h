@@ -23,8 +23,8 @@ inline constexpr int kExitBoundMissed = 3;
 int RunProgram(int argc, char** argv, const std::string& usage, int (*run)());
 
 // Parses the flags. `usage` is the text above the list of flags in --help. Ends the program itself
-// on --help and --version (0) and on a flag that does not exist, a value that does not parse, an
-// argument that is not a flag or a flag file that names another (2).
+// with 0 on --help and --version. Ends it with 2 on a flag that does not exist, a value that does
+// not parse, an argument that is not a flag, or a flag file that names another.
 void ParseFlags(const std::string& usage, int* argc, char*** argv);
 
 std::string ProgramName();

@@ -46,8 +46,8 @@ inline void CosAndSinOfThird(double r, double* cosine, double* sine) {
                       u4 * ((s[4] + s[5] * u) + u2 * (s[6] + s[7] * u) + u4 * (s[8] + s[9] * u)));
 }
 
-// Cosine and sine of acos(r) / 3 for any r, which is cut to [-1, 1]: exact near the ends, where two
-// roots of a cubic are close and the approximation above would shift them by too much.
+// Cosine and sine of acos(r) / 3 for any r, which is cut to [-1, 1]. They are exact near the ends.
+// There two roots of a cubic are close, and the approximation above would shift them by too much.
 inline void TrisectAngle(double r, double* cosine, double* sine) {
   constexpr double kApart = 1e-4;  // of r: the roots differ by more than the approximation's error
   if (std::abs(r) < 1.0 - kApart) {

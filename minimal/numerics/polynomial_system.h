@@ -1,6 +1,6 @@
-// Systems of polynomials in three variables with finitely many solutions: a Macaulay matrix is
-// reduced to the action of multiplication by the first variable, whose real eigenvalues are the
-// first coordinates of the real solutions and whose eigenvectors hold the others.
+// Systems of polynomials in three variables with finitely many solutions. A Macaulay matrix is
+// reduced to the action of multiplication by the first variable. Its real eigenvalues are the first
+// coordinates of the real solutions, and its eigenvectors hold the others.
 //
 // The method is that of Auzinger, Stetter and Moeller (Cox, Little, O'Shea, "Using Algebraic
 // Geometry", chapter 2). A caller must know how many leading monomials of each degree its system
@@ -255,7 +255,7 @@ class MacaulayMatrix {
   }
 
   // The row of x m for the monomial m of degree kDegree that is left over. For s of degree
-  // kDegree - 1 let y s = a m + A and x s = b m + B, A and B of lower degree; then
+  // kDegree - 1 let y s = a m + A and x s = b m + B, A and B of lower degree. Then
   // x (y s) = y (x s) says a (x m) - b (y m) = y B - x A. Two such s give x m.
   template <int kSize>
   static bool ActionOnLeftOver(const NormalForms<kSize>& forms, double* row) {

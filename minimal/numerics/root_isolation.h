@@ -182,9 +182,10 @@ inline Bracket WholePiece(const double* c, double at_one, Bracket bracket) {
 }
 
 // Isolation, and Newton on all roots at once. The real line is cut into (0, 1), (-1, 0) and,
-// through the reversed polynomial, what lies beyond 1 and -1. On each piece the sign variations of
-// the Bernstein coefficients bound the number of roots (Descartes): 0 variations, no root; 1,
-// exactly one; more, the piece is halved (Collins and Akritas 1976; Lane and Riesenfeld 1981). So
+// through the reversed polynomial, what lies beyond 1 and -1. On each piece the sign changes of the
+// Bernstein coefficients bound the number of roots (Descartes). Without a change there is no root,
+// with one there is exactly one. With more the piece is halved (Collins and Akritas 1976; Lane and
+// Riesenfeld 1981). So
 // no real root is lost but for two that are closer than 1e-9 of their piece, which are returned
 // once. c[0] and c[N] must not be zero. Writes at most `capacity` roots; returns their number.
 template <int N>

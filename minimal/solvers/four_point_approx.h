@@ -18,10 +18,10 @@ namespace rigel {
 int Solve4ptApprox(const PreparedMatches& matches, const int* sample, Solutions* solutions);
 
 // The same made exact near zero rotation: Newton steps on the exact determinant of the constraints
-// on t itself (direct_sample.h), which has the roots of det F. Started at the roots of its
-// first-order form for intra-camera samples whose family contains R = I, of its cubic Taylor
-// polynomial for others (matches between cameras, tilted body frames, a single camera); what does
-// not converge is dropped.
+// on t itself (direct_sample.h), which has the roots of det F. For intra-camera samples whose
+// family contains R = I they start at the roots of its first-order form. For others (matches
+// between cameras, tilted body frames, a single camera) they start at the roots of its cubic Taylor
+// polynomial. What does not converge is dropped.
 int Solve4ptApproxPolished(const PreparedMatches& matches, const int* sample, Solutions* solutions);
 
 }  // namespace rigel

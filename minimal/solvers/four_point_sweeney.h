@@ -5,9 +5,9 @@
 //   (z^2 M + z C + K) (t, 1) = 0
 // of 4x4 matrices. Two of its eight eigenvalues are +-i whatever the matches are. In the frame
 // half way (t' = R_y(-a/2) t) the columns of t'_x and t'_z are linear in z, those of t'_y and 1
-// quadratic: the +-i are gone, and the other six eigenvalues are the roots of a sextic, the
-// characteristic polynomial, a quintic for intra-camera samples. Real eigenvalues are all that is
-// wanted, and the polynomial's come in a fraction of the time of an 8x8 eigensolver.
+// quadratic. There the +-i are gone. The other six eigenvalues are the roots of the characteristic
+// polynomial, a sextic, or a quintic for intra-camera samples. Only real eigenvalues are wanted,
+// and the roots take a fraction of the time of an 8x8 eigensolver.
 // Source: Sweeney, Flynn, Turk, "Solving for Relative Pose with a Partially Known Rotation is a
 //   Quadratic Eigenvalue Problem", 3DV 2014, the generalized-camera problem.
 // Units: metres, radians. Degenerate: a sample without motion or of parallel rays (no solution,

@@ -11,8 +11,8 @@
 // centres on one line two more such vectors; so the plain null vector is noise there. Li et al.
 // minimize |A_E e + A_R r| subject to |e| = 1: r is eliminated (by a QR decomposition that stops at
 // the rank of A_R), e is the smallest right singular vector of what is left. The ambiguous
-// vectors have e = 0 only if the origin is on the line of the centres, so moments are taken
-// about the mean centre of the sample, and t is moved back at the end.
+// vectors have e = 0 only if the origin is on the line of the centres. So moments are taken about
+// the mean centre of the sample, and t is moved back at the end.
 //
 // E gives two rotations; each takes t, with its scale and sign, from the linear system
 // (R x_i x x_j) . t = -k of all matches. Both are returned, the one that fits better first.

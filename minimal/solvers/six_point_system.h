@@ -30,9 +30,10 @@ class SixPointSystem {
 
   const RayPair& rays(int k) const { return *rays_[k]; }
   bool all_intra() const { return all_intra_; }
-  // How often the zero motion solves a system of which it is an isolated solution: all intra-camera
-  // matches hold at R = I, t = 0; with two cameras also, to first order, along the rotation about
-  // the line through their centres, which moves neither. 0 if some match is inter-camera.
+  // How often the zero motion solves a system of which it is an isolated solution. All intra-camera
+  // matches hold at R = I, t = 0. With two cameras they hold, to first order, also along the
+  // rotation about the line through their centres, which moves neither. 0 if some match is
+  // inter-camera.
   int zero_motion_multiplicity() const { return !all_intra_ ? 0 : two_centres_ ? 2 : 1; }
   bool SameCentres(int i, int j) const {
     return rays(i).ray1.s == rays(j).ray1.s && rays(i).ray2.s == rays(j).ray2.s;

@@ -11,8 +11,9 @@
 //
 // Each root is polished by Newton's method on M(r) (t, w)' = 0; R is rebuilt as the exact rotation
 // ExpSO3(r). Both stay biased by the linearization. At 1 degree of rotation, without noise, the
-// best solution is off by 0.010 (inter-camera) or 0.026 degrees (intra-camera, two cameras) in
-// rotation, 0.15 or 0.25 degrees in direction (medians, random axis; 100 times that at 10 degrees).
+// best solution of inter-camera samples is off by 0.010 degrees in rotation and 0.15 in direction.
+// For intra-camera samples of two cameras it is 0.026 and 0.25 degrees. These are medians with
+// random axes; at 10 degrees they are 100 times as large.
 //
 // Intra-camera samples: r = 0, t = 0 is a root whatever the matches are, a double one if the
 // centres are on one line. It is never returned; roots near it get a Newton step on the matrix,

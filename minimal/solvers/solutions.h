@@ -13,8 +13,7 @@ inline constexpr int kMaxSolutions = 64;
 
 struct Solution : Pose {
   // False if the sample does not determine |t| (pure translation seen by intra-camera matches, a
-  // central sample): t is then the member of the family whose baseline between the cameras of the
-  // reference match has unit length.
+  // central sample). The baseline between the cameras of the reference match then has unit length.
   bool has_scale = true;
 };
 static_assert(kSameLayoutEverywhere<Solution>, "no member of Solution may be aligned");

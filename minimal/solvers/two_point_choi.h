@@ -4,7 +4,7 @@
 // and a match says n(a) . b = 0, which with g = p - a is linear in two unit vectors:
 //   (Z0, X0) . (cos p, sin p) + (Xs, Xc) . (cos g, sin g) = 0
 // in the coefficients of prepared_matches.h. Two matches turn the first vector into the second by
-// a 2x2 matrix N; that both have unit length, u'(N'N - I) u = 0, is a line in the unknowns
+// a 2x2 matrix N. Both have unit length, so u'(N'N - I) u = 0. This is a line in the unknowns
 // (cos 2p, sin 2p), and the motions are its intersections with the unit circle.
 // Source: Choi, Kim, "Fast and Reliable Minimal Relative Pose Estimation under Planar Motion",
 //   Image and Vision Computing 69, 2018, the solver by line and circle intersection.

@@ -7,8 +7,8 @@
 
 namespace rigel {
 
-// The messages, each of which begins with the printable name of one of `files` (Printable())
-// and a colon, in their order; of those that are equal but for the name the first, with "(N files
+// The messages in their order. Each begins with the printable name of one of `files` (Printable())
+// and a colon. Of those that are equal but for the name only the first is there, with "(N files
 // alike)" behind it. What begins with no such name, or names a line of the file, stands for itself.
 std::vector<std::string> GroupMessages(const std::vector<std::string>& messages,
                                        const std::vector<std::string>& files);

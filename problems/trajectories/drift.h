@@ -1,8 +1,9 @@
 // How far a trajectory drifts from the truth: KITTI's metric, errors of single steps, of the end.
 //
-// KITTI's (Geiger, Lenz, Urtasun 2012; evaluate_odometry.cpp of its devkit): from each 10th frame,
-// along each length L of 100, 200, ..., 800 m of the true path, the error of the motion from that
-// frame to the first more than L farther, divided by L; then the mean of them all.
+// KITTI's metric (Geiger, Lenz, Urtasun 2012; evaluate_odometry.cpp of its devkit) is a mean over
+// segments. They begin at each 10th frame and have the lengths L of 100, 200, ..., 800 m of the
+// true path. A segment ends at the first frame that is more than L farther. Its error is that of
+// the motion over it, divided by L.
 #ifndef RIGEL_PROBLEMS_TRAJECTORIES_DRIFT_H_
 #define RIGEL_PROBLEMS_TRAJECTORIES_DRIFT_H_
 
@@ -40,10 +41,10 @@ struct Drift {
   double start_translation = 0.0;
 };
 
-// Both start at the identity and have the same number of poses, at least two. Where the true path
-// is no longer than 100 m, the lengths are 10, 20, ..., 80 m and, below that, 1, ..., 8 m, and
-// segments start at every frame: such figures are not KITTI's and show more of the noise of single
-// motions.
+// Both start at the identity and have the same number of poses, at least two. If the true path is
+// at most 100 m long, the lengths are 10, 20, ..., 80 m; if it is at most 10 m, 1, ..., 8 m.
+// Segments then start at every frame. Such figures are not KITTI's and show more of the noise of
+// single motions.
 Drift ComputeDrift(const std::vector<Pose>& truth, const std::vector<Pose>& estimate);
 
 }  // namespace rigel

@@ -14,8 +14,8 @@
 
 namespace rigel {
 
-// Time stamps of one frame in two files differ by no more than one of these, seconds or a share of
-// the shorter of the two pairs: cameras of one frame may have stamps of their own.
+// Time stamps of one frame in two files differ by no more than one of these: seconds, or a share of
+// the shorter of the two pairs. Cameras of one frame may have stamps of their own.
 inline constexpr double kSameTimeSeconds = 1e-6;
 inline constexpr double kSameTimeShare = 0.1;
 
