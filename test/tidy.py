@@ -96,7 +96,8 @@ def tidy(number, group, flags):
   """What clang-tidy says of the group, an empty text if nothing."""
   source = os.path.join(ROOT, group[0])
   if len(group) > 1:
-    source = os.path.join(BUILD, f"group_{number}.cc")
+    # Of sources that another includes, clang's analyzer looks only at those in a file of such a name.
+    source = os.path.join(BUILD, f"UnifiedSource{number}.cc")
     with open(source, "w", encoding="utf-8") as file:
       for path in group:
         file.write(f'#include "{BUILD}/include/rigel/{path}"  // NOLINT(bugprone-suspicious-include)\n')
