@@ -167,12 +167,13 @@ std::string SolversWithoutPrior(const std::vector<SolverResults>& solvers) {
   std::string lines;
   for (const SolverResults& solver : solvers) {
     const auto no_prior = [](const PairResult& r) {
-      return r.failed && r.message.rfind("the prior has no ", 0) == 0;
+      return r.failed && r.message.find("the prior has no ") != std::string::npos;
     };
     if (solver.pairs.empty() || !std::all_of(solver.pairs.begin(), solver.pairs.end(), no_prior)) {
       continue;
     }
-    lines += solver.solver + ": " + solver.pairs.front().message + " in any pair; see --prior\n";
+    // The message begins with the name of the solver.
+    lines += solver.pairs.front().message + " in any pair; see --prior\n";
   }
   return lines;
 }
