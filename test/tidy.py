@@ -16,6 +16,7 @@ import concurrent.futures
 import json
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -51,7 +52,7 @@ def configure():
   flags = {}
   for entry in commands:
     path = os.path.relpath(os.path.realpath(entry["file"]), ROOT)
-    words = entry["command"].split()[1:]
+    words = shlex.split(entry["command"])[1:]
     kept, skip = [], False
     for word in words:
       if skip or word in ("-o", "-c"):
