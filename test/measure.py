@@ -68,11 +68,11 @@ def write_json(path, arguments, **members):
 
 
 def print_table(head, rows):
-    """Prints rows of texts and numbers below a head; None is "-". A number has four digits."""
+    """Prints rows of texts and numbers below a head; None is "-". Numbers have three digits."""
     def text(value):
         if value is None:
             return "-"
-        return "%.4g" % value if isinstance(value, float) else str(value)
+        return "%.3g" % value if isinstance(value, float) else str(value)
     cells = [list(head)] + [[text(value) for value in row] for row in rows]
     widths = [max(len(row[k]) for row in cells) for k in range(len(head))]
     for number, row in enumerate(cells):
@@ -440,7 +440,7 @@ def compare_figures(report):
     """Of rigel_compare's report: errors over bounds, the NEES and what else a table shows."""
     result = report["results"][0]
     figures = {"pairs": result["pairs"], "failures": result["failures"],
-               "directions": result.get("direction_pairs")}
+               "unobservable": result["pairs"] - result["failures"] - result.get("direction_pairs", 0)}
     refined, bound = result.get("refined", {}), result.get("bound", {})
     for name, member in (("rotation", "rotation_deg"), ("direction", "translation_dir_deg"),
                          ("rig_direction", "rig_direction_deg")):
