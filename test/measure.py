@@ -379,6 +379,10 @@ def direction_sd(t, covariance):
 
 # --- Statistics ---------------------------------------------------------------------------------
 
+def random_sign(generator):
+    return 1 if generator.random() < 0.5 else -1
+
+
 def median(values):
     values = sorted(values)
     n = len(values)

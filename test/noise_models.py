@@ -33,16 +33,12 @@ def draw_mixture(generator):
 
 
 def draw_laplace(generator):
-    return random_sign(generator) * generator.expovariate(math.sqrt(2) / SIGMA_PX)
+    return measure.random_sign(generator) * generator.expovariate(math.sqrt(2) / SIGMA_PX)
 
 
 def draw_t3(generator):
     chi2 = sum(generator.gauss(0, 1) ** 2 for _ in range(3))
     return SIGMA_PX / math.sqrt(3) * generator.gauss(0, 1) / math.sqrt(chi2 / 3)
-
-
-def random_sign(generator):
-    return 1 if generator.random() < 0.5 else -1
 
 
 def gaussian(sigmas):
