@@ -7,8 +7,8 @@ Takes files without noise of rigel_simulate, adds noise of each model and has ri
 the motions with auto and unknown noise:
 
   gauss-S    Gaussian, S pixels: 0.1, 0.3, 0.5, 1, 2
-  cameras    Gaussian, 0.2, 0.5, 0.5, 1 pixels on the cameras in turn; the scene has four cameras then
-  mixture    80 percent 0.6 sigma, 20 percent 3 sigma, drawn for each coordinate; sigma is 0.5 pixels
+  cameras    Gaussian, 0.2, 0.5, 0.5, 1 pixels on the cameras in turn; `scene` is `scene4` then
+  mixture    each coordinate 0.6 sigma with 80 percent, else 3 sigma; sigma is 0.5 pixels
   laplace    Laplace of standard deviation 0.5 pixels
   t3         Student's t with three degrees of freedom, of standard deviation 0.5 pixels
 
@@ -65,8 +65,7 @@ def add_noise(file, draw_noise, generator):
 def bound_of(file, sigmas):
     """Bounds of rotation and direction in degrees, of a file without noise."""
     cameras, truth = file.cameras(), file.truth()
-    matches = [match for match in file.matches() if measure.is_exact_inlier(match, cameras, truth)]
-    covariance = measure.bound(matches, cameras, truth,
+    covariance = measure.bound(file.inliers(), cameras, truth,
                                [sigmas[k % len(sigmas)] for k in range(len(cameras))])
     if covariance is None:
         return None
@@ -104,7 +103,8 @@ def main():
     parser.add_argument("--rig", default="scene",
                         help="scene, sceneN, ringN or the file of a rig, which drives through the "
                         "street (scene)")
-    parser.add_argument("--models", default="all", help="beginnings of names, comma separated (all)")
+    parser.add_argument("--models", default="all",
+                        help="beginnings of names, comma separated (all)")
     parser.add_argument("--matches", type=int, default=200, help="matches of a pair (200)")
     parser.add_argument("--outliers", type=float, default=0.2, help="share of outliers (0.2)")
     parser.add_argument("--inter_share", type=float, default=0,
@@ -119,7 +119,8 @@ def main():
 
     programs = measure.Programs(arguments.bin, arguments.seed, arguments.threads)
     models = [measure_model(programs, name, arguments) for name in names]
-    head = ["model", "rot deg", "eff", "own", "dir deg", "eff", "own", "NEES", "median", "no t", "fail"]
+    head = ["model", "rot deg", "eff", "own", "dir deg", "eff", "own", "NEES", "median", "no t",
+            "fail"]
     rows = [[m["model"], m["rotation_rms_deg"], m["rotation"], m["rotation_own"],
              m["direction_rms_deg"], m["direction"], m["direction_own"], m["nees_mean"],
              m["nees_median"], m["unobservable"], m["failures"]] for m in models]

@@ -4,14 +4,14 @@
   test/one_camera.py --bin=build/release/bin [--pairs=50] [--turns=1,5,10] [--drive=DIR,...]
 
 Writes match files of a street-like scene (ground, facades, far points, clutter): the body's origin
-is at the axle, turns are Ackermann's, |t| is log-uniform from 0.3 to 3 m, 300 matches, 0.5 pixels of
-noise, 20 percent outliers, no prior. rigel_estimate runs with unknown noise. The matches do not say
-|t| then, and in a turn the direction of t at the axle depends on it. Printed for each turn:
+is at the axle, turns are Ackermann's, |t| is log-uniform from 0.3 to 3 m, 300 matches, 0.5 pixels
+of noise, 20 percent outliers, no prior. rigel_estimate runs with unknown noise. The matches do not
+say |t| then, and in a turn the direction of t at the axle depends on it. Printed for each turn:
 
   flagged        pairs whose direction of t is stated as observable
   err/sd flag    RMS of the error of the direction of t over its stated sigma, over these pairs
   err/sd all     the same over all pairs with a covariance
-  rig err/sd     the same of the direction of the rig's own motion (`-`: the program does not state it)
+  rig err/sd     the same of the direction of the rig's own motion, `-` if that is not stated
   sd > 10        flagged pairs with a stated sigma above 10 degrees, which should be none
   max |t|        the largest of any output, in metres
   at cap         pairs with a |t| of 100 m or more whose direction or scale is stated as observable
@@ -120,7 +120,8 @@ def judge(results, directory):
             flagged.append(ratio)
             figures["too_wide"] += sd > MAX_SD_DEG
         if measure.norm(motion[1]) >= 0.999 * CAP_M:
-            figures["at_cap"] += bool(pair.get("translation_observable") or pair.get("scale_observable"))
+            figures["at_cap"] += bool(pair.get("translation_observable") or
+                                      pair.get("scale_observable"))
         stated = measure.rig_direction(pair)
         if stated:
             rig.append(measure.angle_deg(stated[0], measure.rig_motion(truth, cameras)) / stated[1])
@@ -169,7 +170,8 @@ def main():
     parser.add_argument("--drive", help="directories of drives with truth, comma separated")
     arguments = parser.parse_args()
     programs = measure.Programs(arguments.bin, arguments.seed, arguments.threads)
-    turns = [measure_turn(programs, turn_deg, arguments) for turn_deg in measure.numbers(arguments.turns)]
+    turns = [measure_turn(programs, turn_deg, arguments)
+             for turn_deg in measure.numbers(arguments.turns)]
     measure.print_table(
         ("turn deg", "pairs", "flagged", "err/sd flag", "err/sd all", "rig err/sd", "sd > 10",
          "max |t|", "at cap", "fail"),
@@ -179,7 +181,8 @@ def main():
         write_quarter_circle(folder, arguments.seed)
         drives = [measure_drive(programs, folder, "quarter circle")]
     for directory in arguments.drive.split(",") if arguments.drive else []:
-        drives.append(measure_drive(programs, directory, os.path.basename(os.path.normpath(directory))))
+        drives.append(measure_drive(programs, directory,
+                                    os.path.basename(os.path.normpath(directory))))
     print()
     measure.print_table(("drive", "pairs", "trajectories", "end, percent", "end, deg"),
                         [list(drive.values()) for drive in drives])

@@ -60,7 +60,8 @@ def marginals(results, directory):
 
 
 def measure_setting(programs, rig, matches, yaw, outliers, arguments):
-    settings = {"num_matches": matches, "outlier_share": outliers, "inter_share": arguments.inter_share}
+    settings = {"num_matches": matches, "outlier_share": outliers,
+                "inter_share": arguments.inter_share}
     if yaw == "poses":
         settings.update(poses=arguments.poses,
                         every=max(1, count_poses(arguments.poses) // arguments.pairs))
@@ -73,7 +74,8 @@ def measure_setting(programs, rig, matches, yaw, outliers, arguments):
         if arguments.marginals:
             results, _ = programs.estimate(folder, flags)
             figures["nees_rotation"], figures["nees_rig_direction"] = marginals(results, folder)
-    return {"rig": measure.rig_name(rig), "matches": matches, "yaw": yaw, "outliers": outliers, **figures}
+    return {"rig": measure.rig_name(rig), "matches": matches, "yaw": yaw, "outliers": outliers,
+            **figures}
 
 
 def main():

@@ -107,7 +107,8 @@ def main():
     parser.add_argument("--halvings", type=int, default=5, help="random halvings of each pair (5)")
     parser.add_argument("--even_odd", action="store_true",
                         help="one halving instead, into even and odd matches")
-    parser.add_argument("--per_pair", action="store_true", help="print the median of each pair, too")
+    parser.add_argument("--per_pair", action="store_true",
+                        help="print the median of each pair, too")
     parser.add_argument("flags", nargs="*", metavar="-- FLAG",
                         help="further flags of rigel_estimate, after --")
     arguments = parser.parse_args()
