@@ -9,6 +9,7 @@ that of (d, e) in R <- Exp(d) R, t <- t + e.
 import argparse
 import glob
 import gzip
+import hashlib
 import json
 import math
 import os
@@ -60,11 +61,15 @@ def numbers(text):
     return [float(word) for word in text.split(",")]
 
 
-def write_json(path, arguments, **members):
-    """Writes the options and the figures; does nothing if `path` is empty."""
-    if path:
-        with open(path, "w", encoding="utf-8") as file:
-            json.dump({"options": vars(arguments), **members}, file, indent=1)
+def finish(programs, arguments, **members):
+    """Checks that the programs are still those of the start, and writes the options, what the
+    programs were and the figures to --json, if it is there."""
+    if programs.fingerprints() != programs.at_start:
+        raise Failure("the programs were replaced during the run: the figures are of no one build")
+    if arguments.json:
+        with open(arguments.json, "w", encoding="utf-8") as file:
+            json.dump({"options": vars(arguments), "sha256": programs.at_start, **members}, file,
+                      indent=1)
             file.write("\n")
 
 
@@ -92,6 +97,19 @@ class Programs:
     def __init__(self, directory, seed=1, threads=1):
         self.directory, self.seed, self.threads = directory, seed, threads
         self.helps = {}
+        self.at_start = self.fingerprints()
+
+    def fingerprints(self):
+        """{program: SHA-256}: a build in the same directory may go on during a long run."""
+        found = {}
+        for name in ("rigel_compare", "rigel_estimate", "rigel_simulate"):
+            path = os.path.join(self.directory, name)
+            try:
+                with open(path, "rb") as file:
+                    found[name] = hashlib.sha256(file.read()).hexdigest()
+            except OSError as error:
+                raise Failure("cannot read %s: %s" % (path, error.strerror)) from error
+        return found
 
     def has_flag(self, name, flag):
         """Whether --help of a program lists the flag."""

@@ -5,6 +5,7 @@
 
 FOLDER is the programs', build/release/bin. Python's standard library only.
 """
+import argparse
 import json
 import math
 import os
@@ -125,6 +126,23 @@ class Commands(unittest.TestCase):
             self.assertLessEqual(max(map(len, done.stdout.splitlines())), 100)
             with open(path, encoding="utf-8") as file:
                 return json.load(file)
+
+    def test_programs_that_change(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("rigel_compare", "rigel_estimate", "rigel_simulate"):
+                with open(os.path.join(folder, name), "w", encoding="ascii") as file:
+                    file.write(name)
+            programs = measure.Programs(folder)
+            arguments = argparse.Namespace(json=os.path.join(folder, "out.json"))
+            measure.finish(programs, arguments, figure=1)
+            with open(arguments.json, encoding="utf-8") as file:
+                self.assertEqual(json.load(file)["figure"], 1)
+            os.remove(arguments.json)
+            with open(os.path.join(folder, "rigel_estimate"), "a", encoding="ascii") as file:
+                file.write("rebuilt")
+            with self.assertRaises(measure.Failure):
+                measure.finish(programs, arguments, figure=1)
+            self.assertFalse(os.path.exists(arguments.json))
 
     def test_splits(self):
         result = self.run_command("splits.py", "--halvings=2")["results"][0]

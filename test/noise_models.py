@@ -125,7 +125,7 @@ def main():
              m["direction_rms_deg"], m["direction"], m["direction_own"], m["nees_mean"],
              m["nees_median"], m["unobservable"], m["failures"]] for m in models]
     measure.print_table(head, rows)
-    measure.write_json(arguments.json, arguments, models=models)
+    measure.finish(programs, arguments, models=models)
 
 
 if __name__ == "__main__":

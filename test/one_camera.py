@@ -186,7 +186,7 @@ def main():
     print()
     measure.print_table(("drive", "pairs", "trajectories", "end, percent", "end, deg"),
                         [list(drive.values()) for drive in drives])
-    measure.write_json(arguments.json, arguments, turns=turns, drives=drives)
+    measure.finish(programs, arguments, turns=turns, drives=drives)
 
 
 if __name__ == "__main__":

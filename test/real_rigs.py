@@ -14,9 +14,9 @@ means over the settings:
                      covariances 1 and 0.89
   no t, fail         pairs whose direction is not observable, and pairs without a motion
 
-What the programs do not state is "-". With --marginals rigel_estimate runs, too, and further
-columns have the mean NEES over degrees of freedom of the rotation alone (n rot) and of the rig's
-direction (n rig).
+What the programs do not state is "-"; the last line has the number of settings in each mean. With
+--marginals rigel_estimate runs, too, and further columns have the mean NEES over degrees of freedom
+of the rotation alone (n rot) and of the rig's direction (n rig).
 
 Rigs are files of --rig_dir, paths of such files, `scene`, `sceneN` (the built-in scene with N
 cameras) or `ringN` (N cameras that look around). The last three need no street.
@@ -118,10 +118,12 @@ def main():
                for member in members}
     rows = [[s[name] for name in ("rig", "matches", "yaw", "outliers")] + [s[m] for m in members]
             for s in settings]
+    counted = {member: sum(s[member] is not None for s in settings) for member in members}
     rows += [[name, "", "", ""] + [figures[m] for m in members]
-             for name, figures in (("mean", means), ("largest", largest))]
+             for name, figures in (("mean", means), ("largest", largest), ("settings", counted))]
     measure.print_table(head, rows)
-    measure.write_json(arguments.json, arguments, settings=settings, mean=means, largest=largest)
+    measure.finish(programs, arguments, settings=settings, mean=means, largest=largest,
+                   counted=counted)
 
 
 if __name__ == "__main__":

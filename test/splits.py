@@ -126,7 +126,7 @@ def main():
         for result in results:
             print()
             measure.print_table(("pair", "median"), list(result["pair_medians"].items()))
-    measure.write_json(arguments.json, arguments, results=results)
+    measure.finish(programs, arguments, results=results)
 
 
 if __name__ == "__main__":
