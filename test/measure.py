@@ -1,0 +1,563 @@
+"""What the commands that measure have in common: match files, the programs, geometry, the bound.
+
+Used by splits.py, real_rigs.py, one_camera.py and noise_models.py. Names of flags and of members of
+JSON that a program may not have yet are here and nowhere else. Python's standard library only.
+
+Matrices are lists of rows. A motion is (R, t), X_2 = R X_1 + t in the body frame. Its covariance is
+that of (d, e) in R <- Exp(d) R, t <- t + e.
+"""
+import argparse
+import glob
+import gzip
+import hashlib
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+
+# Medians of chi2 with that many degrees of freedom.
+CHI2_MEDIAN = {2: 1.3863, 3: 2.3660, 5: 4.3515, 6: 5.3481}
+DEFAULT_COLUMNS = "i u v j u2 v2 score".split()
+PRIOR_KEYWORDS = ("gravity1", "gravity2", "gravity_sigma_deg", "axis", "axis_sigma_deg", "normal",
+                  "normal_sigma_deg")
+
+
+class Failure(Exception):
+    """A program failed, or a file is not what it should be. The text is the message."""
+
+
+# --- Command line -------------------------------------------------------------------------------
+
+def make_parser(documentation, pairs=None):
+    """A parser with the flags that all commands have; the documentation is their --help."""
+    parser = argparse.ArgumentParser(description=documentation,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    build = os.environ.get("RIGEL_BUILD_DIR", "build/release")
+    parser.add_argument("--bin", metavar="DIR", default=os.path.join(build, "bin"),
+                        help="directory of the programs; by default $RIGEL_BUILD_DIR/bin or "
+                        "build/release/bin")
+    parser.add_argument("--seed", type=int, default=1, help="seed of all random numbers (1)")
+    parser.add_argument("--threads", type=int, default=1, help="threads of the programs (1)")
+    parser.add_argument("--json", metavar="FILE", help="write the figures to this file, too")
+    if pairs:
+        parser.add_argument("--pairs", type=int, default=pairs,
+                            help="frame pairs of each setting (%d)" % pairs)
+    return parser
+
+
+def run_main(main):
+    """Runs main() and turns a Failure into one line on stderr and exit code 1."""
+    try:
+        main()
+    except Failure as failure:
+        print("%s: %s" % (os.path.basename(sys.argv[0]), failure), file=sys.stderr)
+        sys.exit(1)
+
+
+def numbers(text):
+    """The numbers of a comma separated flag."""
+    return [float(word) for word in text.split(",")]
+
+
+def finish(programs, arguments, **members):
+    """Checks that the programs are still those of the start, and writes the options, what the
+    programs were and the figures to --json, if it is there."""
+    if programs.fingerprints() != programs.at_start:
+        raise Failure("the programs were replaced during the run: the figures are of no one build")
+    if arguments.json:
+        with open(arguments.json, "w", encoding="utf-8") as file:
+            json.dump({"options": vars(arguments), "sha256": programs.at_start, **members}, file,
+                      indent=1)
+            file.write("\n")
+
+
+def print_table(head, rows):
+    """Prints rows of texts and numbers below a head; None is "-". Numbers have three digits."""
+    def text(value):
+        if value is None:
+            return "-"
+        return "%.3g" % value if isinstance(value, float) else str(value)
+    cells = [list(head)] + [[text(value) for value in row] for row in rows]
+    widths = [max(len(row[k]) for row in cells) for k in range(len(head))]
+    for number, row in enumerate(cells):
+        print("  ".join(cell.ljust(width) if k == 0 else cell.rjust(width)
+                        for k, (cell, width) in enumerate(zip(row, widths))).rstrip())
+        if number == 0:
+            print("-" * (sum(widths) + 2 * len(widths) - 2))
+    sys.stdout.flush()
+
+
+# --- Programs -----------------------------------------------------------------------------------
+
+class Programs:
+    """The programs of one directory."""
+
+    def __init__(self, directory, seed=1, threads=1):
+        self.directory, self.seed, self.threads = directory, seed, threads
+        self.helps = {}
+        self.at_start = self.fingerprints()
+
+    def fingerprints(self):
+        """{program: SHA-256}: a build in the same directory may go on during a long run."""
+        found = {}
+        for name in ("rigel_compare", "rigel_estimate", "rigel_simulate"):
+            path = os.path.join(self.directory, name)
+            try:
+                with open(path, "rb") as file:
+                    found[name] = hashlib.sha256(file.read()).hexdigest()
+            except OSError as error:
+                raise Failure("cannot read %s: %s" % (path, error.strerror)) from error
+        return found
+
+    def has_flag(self, name, flag):
+        """Whether --help of a program lists the flag."""
+        if name not in self.helps:
+            self.helps[name] = self.run(name, ["--help"])
+        return "\n  --%s" % flag in self.helps[name]
+
+    def run(self, name, flags, may_miss=False):
+        """Runs a program and returns its stdout. With `may_miss` exit code 1 is allowed: some file
+        could not be read, or no pair has a motion."""
+        command = [os.path.join(self.directory, name)] + flags
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+        except OSError as error:
+            raise Failure("cannot run %s: %s" % (command[0], error.strerror)) from error
+        if done.returncode not in ((0, 1) if may_miss else (0,)):
+            raise Failure("%s ended with code %d: %s" % (" ".join(command), done.returncode,
+                                                         done.stderr.strip()[-500:]))
+        return done.stdout
+
+    def run_json(self, name, flags):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "out.json")
+            self.run(name, flags + ["--json=" + path, "--seed=%d" % self.seed,
+                                    "--threads=%d" % self.threads], may_miss=True)
+            if not os.path.exists(path):
+                raise Failure("%s wrote no JSON; flags: %s" % (name, " ".join(flags)))
+            with open(path, encoding="utf-8") as file:
+                return json.load(file)
+
+    def unknown_noise(self, name):
+        """Flags with which a stated noise is not used. Newer programs estimate it unless told."""
+        return ["--estimate_noise"] if self.has_flag(name, "estimate_noise") else []
+
+    def estimate(self, matches, flags=()):
+        """{name of the file: result} of rigel_estimate with unknown noise, and the whole report."""
+        report = self.run_json("rigel_estimate", ["--matches=" + matches, "--no_times", *flags] +
+                               self.unknown_noise("rigel_estimate"))
+        return {os.path.basename(pair["pair"]): pair for pair in report["pairs"]}, report
+
+    def compare(self, matches, flags=()):
+        """The report of rigel_compare, auto and unknown noise, with the results of each pair."""
+        return self.run_json("rigel_compare", ["--matches=" + matches, "--solvers=auto",
+                                               "--per_pair", "--no_times", *flags] +
+                             self.unknown_noise("rigel_compare"))
+
+    def simulate(self, output, rig, pairs, **settings):
+        """Match files of rigel_simulate. The rig is `scene`, `sceneN` (N cameras), `ringN`, or a
+        file of a rig, which drives through the street. Settings are flags of rigel_simulate."""
+        flags = {"output": output, "seed": self.seed, "threads": self.threads, "pairs": pairs}
+        if rig.startswith("ring"):
+            flags.update(ring="true", num_cameras=rig[4:] or 6)
+        elif os.path.exists(rig):
+            if not self.has_flag("rigel_simulate", "scene"):
+                raise Failure("this rigel_simulate has no street; see --rigs")
+            flags.update(scene="street", rig=rig, motion="car")
+        elif rig.startswith("scene"):
+            flags.update(num_cameras=rig[5:] or 2)
+        else:
+            raise Failure("%s: expected scene, sceneN, ringN or the file of a rig" % rig)
+        flags.update(settings)
+        if "poses" in flags:
+            for name in ("pairs", "motion", "rotation_deg"):
+                flags.pop(name, None)
+        self.run("rigel_simulate", ["--%s=%s" % item for item in flags.items()])
+
+
+def rig_files(names, directory):
+    """The rigs of a comma separated list: those that are files of the directory by their path."""
+    rigs = []
+    for name in names.split(","):
+        path = os.path.join(directory or "", name if name.endswith(".json") else name + ".json")
+        rigs.append(path if os.path.exists(path) else name)
+    return rigs
+
+
+def rig_name(rig):
+    return os.path.splitext(os.path.basename(rig))[0]
+
+
+# --- Match files --------------------------------------------------------------------------------
+
+class MatchFile:
+    """A match file: header lines without the number of matches, and rows of words."""
+
+    def __init__(self, path):
+        opener = gzip.open if path.endswith(".gz") else open
+        self.name = os.path.basename(path).removesuffix(".gz")
+        self.header, self.rows = [], []
+        in_rows = False
+        with opener(path, "rt", encoding="utf-8-sig") as file:
+            for line in file:
+                words = line.split()
+                if not words or words[0].startswith("#"):
+                    continue
+                if in_rows:
+                    self.rows.append(words)
+                elif words[0] == "matches":
+                    in_rows = True
+                else:
+                    self.header.append(words)
+        if not in_rows:
+            raise Failure("%s: no line 'matches'" % path)
+        self.columns = self.line("columns") or DEFAULT_COLUMNS
+
+    def line(self, keyword):
+        """The words after a keyword of the header, or None."""
+        return next((words[1:] for words in self.header if words[0] == keyword), None)
+
+    def set_line(self, keyword, text):
+        """Replaces a line of the header, or removes it if the text is None."""
+        self.header = [words for words in self.header if words[0] != keyword]
+        if text is not None:
+            self.header.append([keyword] + text.split())
+
+    def remove_priors(self):
+        self.header = [words for words in self.header if words[0] not in PRIOR_KEYWORDS]
+
+    def column(self, name):
+        """The index of a column, or None."""
+        return self.columns.index(name) if name in self.columns else None
+
+    def cameras(self):
+        return [Camera(words) for words in self.header if words[0] == "camera"]
+
+    def truth(self):
+        """The true motion (R, t), or None."""
+        words = self.line("truth")
+        if words is None:
+            return None
+        values = [float(word) for word in words]
+        return motion_of(values[:4], values[4:])
+
+    def matches(self):
+        """Rows as (i, u, v, j, u2, v2)."""
+        i, u, v, j, u2, v2 = (self.column(name) for name in ("i", "u", "v", "j", "u2", "v2"))
+        return [(int(row[i]), float(row[u]), float(row[v]),
+                 int(row[j]), float(row[u2]), float(row[v2])) for row in self.rows]
+
+    def inliers(self):
+        """The matches that are right, of a file without noise: as the file says, else those that
+        agree with its motion."""
+        column, cameras, truth = self.column("inlier"), self.cameras(), self.truth()
+        return [match for row, match in zip(self.rows, self.matches())
+                if (agrees(match, cameras, truth) if column is None else int(row[column]))]
+
+    def write(self, directory, rows=None):
+        """Writes the file below its name; `rows` replace its own."""
+        rows = self.rows if rows is None else rows
+        os.makedirs(directory, exist_ok=True)
+        with open(os.path.join(directory, self.name), "w", encoding="utf-8") as file:
+            for words in self.header:
+                file.write(" ".join(words) + "\n")
+            file.write("matches %d\n" % len(rows))
+            for row in rows:
+                file.write(" ".join(row) + "\n")
+
+
+def match_files(directory):
+    """Paths of the match files of a directory, in the order of their names."""
+    paths = sorted(glob.glob(os.path.join(glob.escape(directory), "*.matches")) +
+                   glob.glob(os.path.join(glob.escape(directory), "*.matches.gz")))
+    if not paths:
+        raise Failure("%s: no match files" % directory)
+    return paths
+
+
+def apply_prior(directory, prior):
+    """The flag --prior for the programs. `none` takes the lines of priors out of the files."""
+    if prior != "none":
+        return ["--prior=" + prior]
+    for path in match_files(directory):
+        file = MatchFile(path)
+        file.remove_priors()
+        file.write(directory)
+    return []
+
+
+def add_prior_flag(parser):
+    parser.add_argument("--prior", choices=("none", "body", "file"), default="none",
+                        help="prior of the solvers: none (lines of priors are taken out of the "
+                        "files), body, or file, which is exact in simulated files (none)")
+
+
+# --- Geometry -----------------------------------------------------------------------------------
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def norm(a):
+    return math.sqrt(dot(a, a))
+
+
+def add(a, b):
+    return [x + y for x, y in zip(a, b)]
+
+
+def minus(a, b):
+    return [x - y for x, y in zip(a, b)]
+
+
+def scaled(a, factor):
+    return [factor * x for x in a]
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def apply(matrix, v):
+    return [dot(row, v) for row in matrix]
+
+
+def transposed(a):
+    return [list(column) for column in zip(*a)]
+
+
+def times(a, b):
+    columns = transposed(b)
+    return [[dot(row, column) for column in columns] for row in a]
+
+
+def matrix_of(q):
+    """The rotation of a quaternion w x y z."""
+    w, x, y, z = scaled(q, 1 / norm(q))
+    return [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+
+
+def motion_of(q, t):
+    return matrix_of(q), list(t)
+
+
+def rotation_vector(r):
+    """Log of a rotation of less than 180 degrees."""
+    vee = [(r[2][1] - r[1][2]) / 2, (r[0][2] - r[2][0]) / 2, (r[1][0] - r[0][1]) / 2]
+    sine = norm(vee)
+    angle = math.atan2(sine, (r[0][0] + r[1][1] + r[2][2] - 1) / 2)
+    return scaled(vee, angle / sine) if sine > 1e-12 else vee
+
+
+def angle_deg(a, b):
+    return math.degrees(math.atan2(norm(cross(a, b)), dot(a, b)))
+
+
+def block(matrix, first, size=3):
+    return [row[first:first + size] for row in matrix[first:first + size]]
+
+
+def solve(matrix, right):
+    """x of matrix x = right for a symmetric positive matrix, by Cholesky; None if it is not one."""
+    n = len(right)
+    lower = [[0.0] * n for _ in range(n)]
+    for i in range(n):
+        for j in range(i + 1):
+            value = matrix[i][j] - dot(lower[i][:j], lower[j][:j])
+            if i == j:
+                if not value > 0:
+                    return None
+                lower[i][i] = math.sqrt(value)
+            else:
+                lower[i][j] = value / lower[j][j]
+    x = list(right)
+    for i in range(n):
+        x[i] = (x[i] - dot(lower[i][:i], x[:i])) / lower[i][i]
+    for i in reversed(range(n)):
+        x[i] = (x[i] - sum(lower[k][i] * x[k] for k in range(i + 1, n))) / lower[i][i]
+    return x
+
+
+def inverse(matrix):
+    """Inverse of a symmetric positive matrix; None if it is not one."""
+    n = len(matrix)
+    columns = [solve(matrix, [float(k == j) for k in range(n)]) for j in range(n)]
+    return None if columns[0] is None else transposed(columns)
+
+
+def nees(error, covariance):
+    """error' covariance^-1 error, or None if the covariance is not positive."""
+    x = solve(covariance, error)
+    return None if x is None else dot(error, x)
+
+
+def direction_sd(t, covariance):
+    """Standard deviation of the direction of t in radians: that of its part perpendicular to t."""
+    unit = scaled(t, 1 / norm(t))
+    trace = sum(covariance[k][k] for k in range(3)) - dot(unit, apply(covariance, unit))
+    return math.sqrt(max(trace, 0)) / norm(t)
+
+
+# --- Statistics ---------------------------------------------------------------------------------
+
+def random_sign(generator):
+    return 1 if generator.random() < 0.5 else -1
+
+
+def median(values):
+    values = sorted(values)
+    n = len(values)
+    return None if n == 0 else (values[(n - 1) // 2] + values[n // 2]) / 2
+
+
+def mean(values):
+    values = [value for value in values if value is not None]
+    return sum(values) / len(values) if values else None
+
+
+def rms(values):
+    square = mean([value * value for value in values])
+    return None if square is None else math.sqrt(square)
+
+
+# --- Results of the programs --------------------------------------------------------------------
+
+def refined_motion(pair):
+    """The refined (R, t) of a result of rigel_estimate, or None."""
+    motion = pair.get("refined")
+    return motion_of(motion["q_wxyz"], motion["t"]) if motion else None
+
+
+def rotation_covariance(pair):
+    """3 x 3, or None where the rotation or its covariance is not stated as known."""
+    if not pair.get("rotation_observable") or not pair.get("covariance_valid", True):
+        return None
+    return block(pair["covariance"], 0) if "covariance" in pair else None
+
+
+def translation_direction_sd_deg(pair):
+    """The stated standard deviation of the direction of t, from the covariance where it is not
+    stated as known; None without a covariance."""
+    if "translation_dir_sd_deg" in pair:
+        return pair["translation_dir_sd_deg"]
+    if "covariance" not in pair or norm(pair["refined"]["t"]) == 0:
+        return None
+    return math.degrees(direction_sd(pair["refined"]["t"], block(pair["covariance"], 3)))
+
+
+def rig_direction(pair):
+    """The direction of the rig's own motion and its standard deviation in degrees, or None."""
+    direction, sd = pair.get("rig_direction"), pair.get("rig_direction_sd_deg")
+    return None if direction is None or sd is None else (direction, sd)
+
+
+def rig_centre(cameras):
+    return scaled([sum(x) for x in zip(*(camera.position for camera in cameras))], 1 / len(cameras))
+
+
+def rig_motion(motion, cameras):
+    """The motion of the rig's centre, R c + t - c."""
+    centre = rig_centre(cameras)
+    return add(minus(apply(motion[0], centre), centre), motion[1])
+
+
+def compare_figures(report):
+    """Of rigel_compare's report: errors over bounds, the NEES and what else a table shows."""
+    result = report["results"][0]
+    pairs, failures = result["pairs"], result["failures"]
+    figures = {"pairs": pairs, "failures": failures,
+               "unobservable": pairs - failures - result.get("direction_pairs", 0)}
+    refined, bound = result.get("refined", {}), result.get("bound", {})
+    for name, member in (("rotation", "rotation_deg"), ("direction", "translation_dir_deg"),
+                         ("rig_direction", "rig_direction_deg")):
+        error, limit = (s.get(member, {}).get("rms") for s in (refined, bound))
+        figures[name + "_rms_deg"], figures[name + "_bound_deg"] = error, limit
+        figures[name] = error / limit if error is not None and limit else None
+    figures["bound_scale"] = bound.get("scale", {}).get("rms")
+    figures["nees_mean"] = result.get("nees", {}).get("ratio")
+    stated = [pair["solvers"]["auto"].get("nees") for pair in report.get("pair_results", [])]
+    figures["nees_median"] = median([n["value"] / n["degrees_of_freedom"] for n in stated if n])
+    return figures
+
+
+# --- Pinholes and the bound ---------------------------------------------------------------------
+
+class Camera:
+    """A pinhole, from the words of its line: its rays and how they change with the pixel."""
+
+    def __init__(self, words):
+        if words[2] != "pinhole":
+            raise Failure("camera %s is no pinhole" % words[1])
+        values = [float(word) for word in words[3:]]
+        self.fx, self.fy, self.cx, self.cy, self.width, self.height = values[:6]
+        self.rotation, self.position = matrix_of(values[6:10]), values[10:13]
+
+    def ray(self, u, v):
+        return apply(self.rotation, [(u - self.cx) / self.fx, (v - self.cy) / self.fy, 1.0])
+
+    def ray_by_pixel(self):
+        """Derivatives of ray() by u and v."""
+        columns = transposed(self.rotation)
+        return scaled(columns[0], 1 / self.fx), scaled(columns[1], 1 / self.fy)
+
+    def project(self, point):
+        """The pixel of a point of the body frame, or None behind the camera."""
+        x, y, z = apply(transposed(self.rotation), minus(point, self.position))
+        return (self.fx * x / z + self.cx, self.fy * y / z + self.cy) if z > 0.1 else None
+
+    def sees(self, pixel):
+        return pixel is not None and 0 <= pixel[0] < self.width and 0 <= pixel[1] < self.height
+
+
+def constraint(match, cameras, motion, sigmas):
+    """The epipolar constraint of a match, its derivative by (d, e), and its standard deviation.
+    `sigmas` are the noise of the cameras in pixels."""
+    i, u, v, j, u2, v2 = match
+    first, second = cameras[i], cameras[j]
+    rotation, t = motion
+    ray = apply(rotation, first.ray(u, v))
+    other = second.ray(u2, v2)
+    arm = apply(rotation, first.position)
+    baseline = minus(add(arm, t), second.position)
+    normal = cross(ray, other)  # C = baseline . (ray x other)
+    value = dot(baseline, normal)
+    # Of C by the two rays; a turn d moves both the ray and the arm.
+    by_ray, by_other = cross(other, baseline), cross(baseline, ray)
+    derivative = add(cross(ray, by_ray), cross(arm, normal)) + normal
+    variance = 0.0
+    for direction in first.ray_by_pixel():
+        variance += (sigmas[i] * dot(by_ray, apply(rotation, direction))) ** 2
+    for direction in second.ray_by_pixel():
+        variance += (sigmas[j] * dot(by_other, direction)) ** 2
+    return value, derivative, math.sqrt(variance)
+
+
+def bound(matches, cameras, motion, sigmas, length_sd=1.0):
+    """The Cramer-Rao covariance, 6 x 6, of the motion from matches at their exact pixels. What the
+    matches do not say of the length of the rig's motion is known to exp(+-length_sd)."""
+    information = [[0.0] * 6 for _ in range(6)]
+
+    def add_row(row):
+        for k in range(6):
+            for m in range(6):
+                information[k][m] += row[k] * row[m]
+
+    for match in matches:
+        _, derivative, sd = constraint(match, cameras, motion, sigmas)
+        if sd > 0:
+            add_row(scaled(derivative, 1 / sd))
+    along = rig_motion(motion, cameras)
+    by_length = scaled(along, 1 / dot(along, along))
+    arm = apply(motion[0], rig_centre(cameras))
+    add_row(scaled(cross(arm, by_length) + by_length, 1 / length_sd))
+    return inverse(information)
+
+
+def agrees(match, cameras, motion):
+    """Whether a match without noise agrees with the motion: to 1e-5 pixels, since files round."""
+    value, _, sd = constraint(match, cameras, motion, [1.0] * len(cameras))
+    return abs(value) <= 1e-5 * sd
