@@ -33,9 +33,10 @@ enum KeywordId {
 struct Keyword {
   std::string_view name;
   std::string_view usage;  // the whole line; its words name the columns in messages
-  size_t columns;          // kAnyColumns: the line says itself
+  size_t columns;          // or kAnyColumns
 };
 
+// Words of a line that says itself how many it has.
 inline constexpr size_t kAnyColumns = 0;
 inline constexpr std::array<Keyword, kNumKeywords> kKeywords = {{
     {"format", "format rigmatch 1", 3},

@@ -141,6 +141,7 @@ TEST(Comparison, RunSolverFillsResultsInTheOrderOfTheInput) {
     pairs.back().sequence = "s" + std::to_string(index);
   }
   pairs[3].matches.resize(2);
+  pairs[3].columns = MatchColumns();
   pairs[4].prior = MotionPrior();
   pairs[5].truth.reset();
   EstimateOptions options;
