@@ -1,4 +1,5 @@
-// rigel_simulate: match files of the synthetic scene.
+// rigel_simulate: match files of synthetic scenes.
+#include <algorithm>
 #include <atomic>
 #include <charconv>
 #include <cstdio>
@@ -9,10 +10,14 @@
 
 #include <gflags/gflags.h>
 
+#include "rigel/core/body_axes.h"
 #include "rigel/core/parallel.h"
 #include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/parse_number.h"
+#include "rigel/problems/io/rig_file.h"
 #include "rigel/problems/io/whole_file.h"
 #include "rigel/problems/scenes/driven_motion.h"
+#include "rigel/problems/scenes/street.h"
 #include "rigel/problems/scenes/synthetic.h"
 #include "rigel/tools/output_directory.h"
 #include "rigel/tools/progress.h"
@@ -22,6 +27,14 @@ DEFINE_string(
     output, "",
     "directory for the match files 000000.matches, ...; created if missing. It must not hold "
     "other match files");
+DEFINE_string(scene, "box", "box, or street: a car on a street, with the cameras of --rig");
+DEFINE_string(rig, "",
+              "with --scene=street: rig file (JSON, docs/formats.md) of the cameras. Distortion is "
+              "left out");
+DEFINE_double(ground_m, 0.35,
+              "with --scene=street: how far the ground is below the body's origin, metres. Without "
+              "it that of the rig file, if it says so");
+DEFINE_double(distance_m, 1, "with --scene=street: |t| of each pair, metres");
 DEFINE_int32(pairs, 50, "number of frame pairs, one per file");
 DEFINE_int32(num_cameras, 2, "number of cameras of the rig: 1 to 4, with --ring 1 to 16");
 DEFINE_bool(
@@ -32,10 +45,21 @@ DEFINE_bool(
 DEFINE_int32(num_matches, 200, "number of matches per pair");
 DEFINE_double(noise_px, 0.5,
               "standard deviation of the image noise, pixels, on each coordinate in both views");
-DEFINE_double(rotation_deg, 1, "rotation angle of each pair, degrees");
+DEFINE_string(
+    camera_noise_px, "",
+    "the same for each camera, separated by commas: 0.2,0.5. Replaces --noise_px. The files have "
+    "columns sigma1 and sigma2, and their noise_px is the root mean square");
+DEFINE_string(
+    noise_model, "gaussian",
+    "gaussian, mixture (Gaussian, 80 percent of 0.6 and 20 percent of 3 of the stated deviation), "
+    "laplace, or t3 (Student's t with 3 degrees of freedom)");
+DEFINE_double(rotation_deg, 1,
+              "rotation angle of each pair, degrees. With --scene=street its yaw, the sign random");
 DEFINE_string(rotation_axis, "y", "rotation axis: y (Y of the body) or random");
 DEFINE_string(motion, "forward",
-              "direction of translation: forward, random, sideways or planar; |t| is 1 m");
+              "direction of translation: forward, random, sideways or planar; |t| is 1 m. With "
+              "--scene=street it is car: forward on an arc (Ackermann), with pitch and roll of "
+              "N(0, 0.2 degrees)");
 DEFINE_double(inter_share, 0, "share of matches between different cameras, 0 to 1");
 DEFINE_double(outlier_share, 0,
               "share of outliers, 0 to 1: their second point is uniform in the image");
@@ -48,10 +72,10 @@ DEFINE_bool(
     "write match scores like Lowe's ratio, lower for inliers than for outliers. Off: all scores "
     "are 0");
 DEFINE_uint64(seed, 1, "seed of the random numbers. The same seed gives the same files");
-DEFINE_string(
-    poses, "",
-    "directory of KITTI odometry poses (00.txt, ...): one pair per two consecutive frames, with "
-    "their motion. Replaces --pairs, --motion, --rotation_deg and --rotation_axis");
+DEFINE_string(poses, "",
+              "directory of KITTI odometry poses (00.txt, ...), or one such file: one pair per two "
+              "consecutive frames, with their motion. Replaces --pairs, --motion, --rotation_deg, "
+              "--rotation_axis and --distance_m");
 DEFINE_int32(every, 1, "with --poses: take every n-th pair of consecutive frames");
 DEFINE_int32(threads, 1, "number of threads, 1 to 1024. The files do not depend on it");
 
@@ -67,7 +91,8 @@ constexpr char kUsage[] =
     "pixels), each moved by N(0, 0.05 m) and rotated by N(0, 0.1 rad) per axis. A third and a\n"
     "fourth camera are above and below them. Points are uniform in the image of view 1, at 5 to\n"
     "30 m. The files hold the true motion, the image noise and the exact gravity and axis, for\n"
-    "planar motion also the normal.\n"
+    "planar motion also the normal. Of each match they say whether it is an inlier, and where its\n"
+    "points are without noise (columns inlier u0 v0 u20 v20).\n"
     "\n"
     "  rigel_simulate --output=DIR --ring --num_cameras=8 --rotation_deg=10\n"
     "\n"
@@ -82,7 +107,36 @@ constexpr char kUsage[] =
     "\n"
     "The same rig and points with the motions of recorded drives. The body is KITTI's left\n"
     "camera, the sequence is the name of the file with the poses, and gravity is the vertical of\n"
-    "the first frame of the sequence.\n";
+    "the first frame of the sequence.\n"
+    "\n"
+    "  rigel_simulate --output=DIR --scene=street --rig=rig.json --rotation_deg=2\n"
+    "\n"
+    "A car on a street, with any rig: the ground, facades 7 to 13 m to either side and 12 m high,\n"
+    "points at 30 to 200 m, and a quarter of the points nearer than these. Each match is seen by\n"
+    "its cameras at their times; matches between cameras are of those that share a view. Moving\n"
+    "cars are ahead and behind. With --poses the car drives as recorded.\n";
+
+// What is simulated.
+struct Simulation {
+  bool on_street = false;
+  SceneOptions box;
+  StreetOptions street;
+  std::vector<DrivenMotion> motions;
+  int num_pairs = 0;
+
+  SceneMatchOptions* matches() {
+    return on_street ? static_cast<SceneMatchOptions*>(&street) : &box;
+  }
+
+  bool MakePair(int k, FramePair* pair, std::string* error) const {
+    if (motions.empty()) {
+      return on_street ? MakeStreetPair(street, k, pair, error)
+                       : MakeScenePair(box, k, pair, error);
+    }
+    return on_street ? MakeDrivenPair(street, k, motions[k], pair, error)
+                     : MakeDrivenPair(box, k, motions[k], pair, error);
+  }
+};
 
 std::string FileName(int k) {
   char name[32];
@@ -104,8 +158,8 @@ void LowerTo(int k, std::atomic<int>* least) {
 
 // Makes and writes all files. The message of the first that failed, in their order; empty if none
 // did. After a failure no more are begun.
-std::string WriteFiles(const SceneOptions& options, const std::vector<DrivenMotion>& motions,
-                       int num_pairs) {
+std::string WriteFiles(const Simulation& simulation) {
+  const int num_pairs = simulation.num_pairs;
   Progress progress(ProgramName(), num_pairs);
   std::vector<std::string> errors(num_pairs);
   std::atomic<int> failed{num_pairs};  // the first
@@ -114,9 +168,7 @@ std::string WriteFiles(const SceneOptions& options, const std::vector<DrivenMoti
     const std::string path = (std::filesystem::path(FLAGS_output) / FileName(k)).string();
     FramePair pair;
     std::string error;
-    const bool made = motions.empty() ? MakeScenePair(options, k, &pair, &error)
-                                      : MakeDrivenPair(options, k, motions[k], &pair, &error);
-    if (!made) {
+    if (!simulation.MakePair(k, &pair, &error)) {
       errors[k] = PrintablePath(path) + ": " + error;
     } else if (!WriteMatchFile(path, pair, &error)) {
       errors[k] = error;
@@ -127,40 +179,110 @@ std::string WriteFiles(const SceneOptions& options, const std::vector<DrivenMoti
   return failed < num_pairs ? errors[failed] : "";
 }
 
-bool SceneFromFlags(SceneOptions* options, std::string* error) {
+bool MatchesFromFlags(SceneMatchOptions* options, std::string* error) {
+  for (const std::string& word : SplitCommas(FLAGS_camera_noise_px)) {
+    double sigma;
+    if (!ParseFinite(word, &sigma)) {
+      return WrongValue("camera_noise_px", word, "numbers, separated by commas", error);
+    }
+    options->camera_noise_px.push_back(sigma);
+  }
+  if (!options->camera_noise_px.empty() && IsGiven("noise_px")) {
+    return Refuse("--noise_px: --camera_noise_px replaces it", error);
+  }
+  if (!ParseNoiseModel(FLAGS_noise_model, &options->noise_model)) {
+    return WrongValue("noise_model", FLAGS_noise_model, "gaussian, mixture, laplace or t3", error);
+  }
+  options->num_matches = FLAGS_num_matches;
+  options->noise_px = FLAGS_noise_px;
+  options->inter_share = FLAGS_inter_share;
+  options->outlier_share = FLAGS_outlier_share;
+  options->moving_share = FLAGS_moving_share;
+  options->match_scores = FLAGS_match_scores;
+  options->seed = FLAGS_seed;
+  return true;
+}
+
+bool BoxFromFlags(SceneOptions* options, std::string* error) {
+  const std::string flag = FirstGiven({"rig", "ground_m", "distance_m"});
+  if (!flag.empty()) return Refuse("--" + flag + ": is of --scene=street", error);
   if (!ParseMotionPattern(FLAGS_motion, &options->motion)) {
-    return WrongValue("motion", FLAGS_motion, "forward, random, sideways or planar", error);
+    const std::string street = FLAGS_motion == "car" ? ". A car needs --scene=street" : "";
+    return WrongValue("motion", FLAGS_motion, "forward, random, sideways or planar" + street,
+                      error);
   }
   if (!ParseRotationAxisPattern(FLAGS_rotation_axis, &options->rotation_axis)) {
     return WrongValue("rotation_axis", FLAGS_rotation_axis, "y or random", error);
   }
   options->num_cameras = FLAGS_num_cameras;
   options->ring = FLAGS_ring;
-  options->num_matches = FLAGS_num_matches;
-  options->noise_px = FLAGS_noise_px;
   options->rotation_deg = FLAGS_rotation_deg;
-  options->inter_share = FLAGS_inter_share;
-  options->outlier_share = FLAGS_outlier_share;
-  options->moving_share = FLAGS_moving_share;
-  options->match_scores = FLAGS_match_scores;
-  options->seed = FLAGS_seed;
   if (options->IsValid(error)) return true;
   *error = "--" + *error;
   return false;
 }
 
-bool SettingsFromFlags(SceneOptions* options, std::string* error) {
+// All but what the rig file says.
+bool StreetFromFlags(StreetOptions* options, std::string* error) {
+  if (FLAGS_rig.empty()) return Refuse("--rig is missing: name a rig file (JSON)", error);
+  const std::string flag = FirstGiven({"num_cameras", "ring", "rotation_axis"});
+  if (!flag.empty()) return Refuse("--" + flag + ": is of --scene=box", error);
+  if (IsGiven("motion") && FLAGS_motion != "car") {
+    return WrongValue("motion", FLAGS_motion, "car, the motion on the street", error);
+  }
+  options->ground_m = FLAGS_ground_m;
+  options->rotation_deg = FLAGS_rotation_deg;
+  options->distance_m = FLAGS_distance_m;
+  // A camera of its own, or as many as --camera_noise_px has: these are known of the rig later.
+  const int num_cameras = std::max(2, static_cast<int>(options->camera_noise_px.size()));
+  if (options->AreNumbersValid(error) && options->AreMatchesValid(num_cameras, error)) return true;
+  *error = "--" + *error;
+  return false;
+}
+
+bool SettingsFromFlags(Simulation* simulation, std::string* error) {
   if (FLAGS_output.empty()) return Refuse("--output is missing: name a directory", error);
   if (FLAGS_pairs < 1) return Refuse("--pairs: expected at least 1", error);
-  if (!SceneFromFlags(options, error)) return false;
+  if (FLAGS_scene != "box" && FLAGS_scene != "street") {
+    return WrongValue("scene", FLAGS_scene, "box or street", error);
+  }
+  simulation->on_street = FLAGS_scene == "street";
+  if (!MatchesFromFlags(simulation->matches(), error)) return false;
+  if (simulation->on_street ? !StreetFromFlags(&simulation->street, error)
+                            : !BoxFromFlags(&simulation->box, error)) {
+    return false;
+  }
   if (FLAGS_every < 1) return Refuse("--every: expected at least 1", error);
   if (!CheckThreads(FLAGS_threads, 1, error)) return false;
-  const std::string flag = FirstGiven({"pairs", "motion", "rotation_deg", "rotation_axis"});
+  const std::string flag =
+      FirstGiven({"pairs", "motion", "rotation_deg", "rotation_axis", "distance_m"});
   if (!FLAGS_poses.empty() && !flag.empty()) {
     return Refuse("--" + flag + ": the motions are those of --poses", error);
   }
   if (FLAGS_poses.empty() && IsGiven("every")) {
     return Refuse("--every: there are no recorded motions without --poses", error);
+  }
+  return true;
+}
+
+// Takes the rig of the file, its axes and its ground. False with a message if it cannot be read.
+bool TakeRig(StreetOptions* street, std::string* error) {
+  RigFile file;
+  if (!ReadRigFile(FLAGS_rig, &file, error)) return false;
+  if (!ResolveBodyAxes(file.rig, file.down, file.forward, &street->axes, error)) {
+    *error = PrintablePath(FLAGS_rig) + ": " + *error;
+    return false;
+  }
+  street->rig = file.rig;
+  if (file.ground_m && !IsGiven("ground_m")) street->ground_m = *file.ground_m;
+  if (file.num_undistorted > 0) {
+    std::cerr << PrintablePath(FLAGS_rig) << ": the distortion of " << file.num_undistorted
+              << " of " << file.rig.size() << " cameras is left out\n";
+  }
+  if (!file.down || !file.forward) {
+    std::cerr << PrintablePath(FLAGS_rig) << ": taken from the cameras: down "
+              << DirectionText(street->axes.down) << ", forward "
+              << DirectionText(street->axes.forward) << "\n";
   }
   return true;
 }
@@ -178,19 +300,24 @@ bool PrepareOutput(int num_pairs, std::string* error) {
 }
 
 int Run() {
-  SceneOptions options;
-  std::vector<DrivenMotion> motions;
+  Simulation simulation;
   std::string error;
-  if (!SettingsFromFlags(&options, &error)) return UsageError(error);
+  if (!SettingsFromFlags(&simulation, &error)) return UsageError(error);
+  if (simulation.on_street) {
+    if (!TakeRig(&simulation.street, &error)) return Failure(error);
+    if (!simulation.street.IsValid(&error)) return UsageError("--" + error);
+  }
+  std::vector<DrivenMotion>& motions = simulation.motions;
   if (!FLAGS_poses.empty() && !ReadDrivenMotions(FLAGS_poses, FLAGS_every, &motions, &error)) {
     return Failure(error);
   }
-  const int num_pairs = motions.empty() ? FLAGS_pairs : static_cast<int>(motions.size());
-  if (!PrepareOutput(num_pairs, &error)) return Failure(error);
+  simulation.num_pairs = motions.empty() ? FLAGS_pairs : static_cast<int>(motions.size());
+  if (!PrepareOutput(simulation.num_pairs, &error)) return Failure(error);
 
-  error = WriteFiles(options, motions, num_pairs);
+  error = WriteFiles(simulation);
   if (!error.empty()) return Failure(error);
-  std::cerr << "wrote " << num_pairs << " match files to " << PrintablePath(FLAGS_output) << "\n";
+  std::cerr << "wrote " << simulation.num_pairs << " match files to " << PrintablePath(FLAGS_output)
+            << "\n";
   return kExitDone;
 }
 

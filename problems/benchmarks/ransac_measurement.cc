@@ -37,10 +37,14 @@ std::optional<RansacProblem> MakeProblem(const SceneOptions& scene, int index) {
   }
   problem.clean = problem.pair;
   problem.clean->matches.clear();
+  std::vector<size_t> rows;
   for (size_t k = 0; k < clean.matches.size(); ++k) {
     const Match& match = problem.pair.matches[k];
-    if (match.pixel2 == clean.matches[k].pixel2) problem.clean->matches.push_back(match);
+    if (match.pixel2 != clean.matches[k].pixel2) continue;
+    problem.clean->matches.push_back(match);
+    rows.push_back(k);
   }
+  problem.clean->columns = problem.pair.columns.Subset(rows);
   return problem;
 }
 

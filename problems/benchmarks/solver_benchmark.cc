@@ -126,6 +126,9 @@ std::vector<Problem> MakeProblems(const SolverInfo& solver, const SolverBenchmar
     } else {
       const GroupedMatches grouped(problem.pair.rig, problem.pair.matches);
       problem.pair.matches = grouped.matches();
+      std::vector<size_t> rows;
+      for (int m = 0; m < grouped.size(); ++m) rows.push_back(grouped.original(m));
+      problem.pair.columns = problem.pair.columns.Subset(rows);
       Random random = Random::Stream(options.seed, static_cast<uint64_t>(k));
       const Sampler sampler(grouped.groups(), solver.sampling, solver.sample_size);
       if (!sampler.Draw(&random, problem.sample.data())) continue;

@@ -50,6 +50,7 @@ std::vector<BatchItem<Result>> RunBatch(const ComparisonOptions& options,
         item.result = work(item.pair);
         item.pair.rig = Rig();
         item.pair.matches = std::vector<Match>();
+        item.pair.columns = MatchColumns();
       }
     } catch (const std::exception& exception) {
       item.pair = FramePair();

@@ -197,9 +197,15 @@ bool ParseMatchUse(std::string_view name, MatchUse* use) {
 void SelectMatches(MatchUse use, FramePair* pair) {
   if (use == MatchUse::kAll) return;
   const bool intra = use == MatchUse::kIntra;
-  const auto end = std::remove_if(pair->matches.begin(), pair->matches.end(),
-                                  [intra](const Match& m) { return m.IsIntra() != intra; });
-  pair->matches.erase(end, pair->matches.end());
+  std::vector<size_t> rows;
+  std::vector<Match> matches;
+  for (size_t k = 0; k < pair->matches.size(); ++k) {
+    if (pair->matches[k].IsIntra() != intra) continue;
+    rows.push_back(k);
+    matches.push_back(pair->matches[k]);
+  }
+  pair->matches = std::move(matches);
+  pair->columns = pair->columns.Subset(rows);
 }
 
 bool HasInterCameraMatches(const FramePair& pair) {

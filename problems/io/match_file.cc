@@ -13,6 +13,7 @@
 #include "rigel/problems/io/match_file_list.h"
 #include "rigel/problems/io/match_file_words.h"
 #include "rigel/problems/io/match_lines.h"
+#include "rigel/problems/io/match_rows.h"
 #include "rigel/problems/io/match_text.h"
 #include "rigel/problems/io/printable.h"
 #include "rigel/problems/io/whole_file.h"
@@ -29,9 +30,6 @@ bool EndsWith(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
 }
 
-constexpr std::string_view kRowUsage = "I U V J U2 V2 SCORE";
-// Words of a row: those of kRowUsage.
-constexpr size_t kRowColumns = 7;
 // "0 0 0 0 0 0 0\n": bounds what `matches N` can truthfully announce.
 constexpr size_t kMinRowBytes = 14;
 
@@ -191,6 +189,8 @@ class Parser : private MatchLines {
         return Positive(&pair_.noise_px);
       case kSequence:
         return Sequence();
+      case kColumns:
+        return rows_.ReadNames(this);
       case kMatches:
         return Integer(1, 0, &num_matches_);
       case kNumKeywords:
@@ -225,7 +225,9 @@ class Parser : private MatchLines {
         return Fail("no 'format' line before 'matches', expected '" +
                     std::string(kKeywords[kFormat].usage) + "'");
       }
-      if (!CheckColumns(keyword.columns) || !HeaderLine(static_cast<KeywordId>(id))) return false;
+      const bool any = keyword.columns == kAnyColumns;
+      if (!any && !CheckColumns(keyword.columns)) return false;
+      if (!HeaderLine(static_cast<KeywordId>(id))) return false;
       if (id == kMatches) return true;
     }
     if (seen[kFormat] == 0) {
@@ -251,22 +253,17 @@ class Parser : private MatchLines {
     return true;
   }
 
-  bool CameraOfRow(size_t column, int* camera) {
-    if (!Integer(column, 0, camera)) return false;
-    if (*camera < pair_.rig.size()) return true;
-    return FailColumn(column,
-                      "a declared camera (0 to " + std::to_string(pair_.rig.size() - 1) + ")");
-  }
-
   bool ParseRows() {
-    SetUsage(kRowUsage);
+    SetUsage(rows_.usage());
     // N is only believed as far as the text could hold it.
     const size_t num_rows = static_cast<size_t>(num_matches_);
     std::vector<Match>& matches = pair_.matches;
     matches.reserve(std::min(num_rows, BytesLeft() / kMinRowBytes + 1));
     for (;;) {
       Match m;
-      while (matches.size() < num_rows && TakePlainRow(pair_.rig.size(), &m)) matches.push_back(m);
+      while (rows_.IsDefault() && matches.size() < num_rows && TakePlainRow(pair_.rig.size(), &m)) {
+        matches.push_back(m);
+      }
       if (!NextLine()) break;
       if (FindKeyword(Column(0)) >= 0) {
         return Fail(Quoted(Column(0)) + " after 'matches', expected header lines before it");
@@ -275,11 +272,7 @@ class Parser : private MatchLines {
         return Fail("more rows than 'matches " + std::to_string(num_rows) +
                     "' announces, expected the end of the file");
       }
-      if (!CheckColumns(kRowColumns) || !CameraOfRow(0, &m.camera1) || !Vector(1, &m.pixel1) ||
-          !CameraOfRow(3, &m.camera2) || !Vector(4, &m.pixel2) || !Number(6, &m.score)) {
-        return false;
-      }
-      matches.push_back(m);
+      if (!rows_.ReadRow(this, &pair_)) return false;
     }
     if (matches.size() == num_rows) return true;
     return Fail("the file ends after " + std::to_string(matches.size()) + " rows, expected " +
@@ -288,6 +281,7 @@ class Parser : private MatchLines {
 
   FramePair pair_;
   std::map<int, DeclaredCamera> cameras_;
+  MatchRows rows_;
   int num_matches_ = 0;
 };
 
@@ -347,9 +341,11 @@ std::string FormatMatches(const FramePair& pair) {
   }
   if (pair.noise_px) f.Word(kKeywords[kNoise].name).Number(*pair.noise_px).EndLine();
   if (!pair.sequence.empty()) f.Word(kKeywords[kSequence].name).Word(pair.sequence).EndLine();
+  const MatchRows rows(pair);
+  if (!rows.IsDefault()) f.Word(kKeywords[kColumns].name).Word(rows.usage()).EndLine();
   f.Word(kKeywords[kMatches].name).Number(pair.matches.size()).EndLine();
-  for (const Match& m : pair.matches) {
-    f.Number(m.camera1).Vector(m.pixel1).Number(m.camera2).Vector(m.pixel2).Number(m.score);
+  for (size_t k = 0; k < pair.matches.size(); ++k) {
+    rows.WriteRow(pair, k, &f);
     f.EndLine();
   }
   return f.Take();
@@ -366,6 +362,11 @@ bool WriteMatchFile(const std::string& path, const FramePair& pair, std::string*
   const std::string refusal = path + ": not written, it could not be read back";
   FramePair read;
   if (!ParseMatches(text, refusal, &read, error)) return false;
+  std::string what;
+  if (!pair.columns.IsValid(pair.matches.size(), &what)) {
+    *error = Printable(refusal) + ": " + what;
+    return false;
+  }
   if (read.time1 != pair.time1 || read.time2 != pair.time2) {
     *error = Printable(refusal) + ": one time is missing, expected both or none";
     return false;

@@ -15,8 +15,14 @@
 //   distance D SIGMA
 //   noise_px S
 //   sequence NAME
+//   columns NAME ...
 //   matches N
 //   I U V J U2 V2 SCORE                  (N rows)
+//
+// `columns` names the columns of the rows, each once, in any order. Without it they are `i u v j u2
+// v2 score`, which all files have. The others are those of MatchColumns: `landmark sigma1 sigma2
+// depth1 depth_sigma a11 a12 a21 a22 affine_sigma inlier u0 v0 u20 v20`; of `a11 a12 a21 a22`, the
+// affine frame, all four or none, and so of `u0 v0 u20 v20`, the exact pixels.
 //
 // `format`, `matches` and at least `camera 0` are required. Header lines come in any order
 // before `matches`; `#` starts a comment line, blank lines are ignored, columns are separated by
@@ -52,7 +58,8 @@ bool ParseMatches(std::string_view text, const std::string& name, FramePair* pai
 // The text of a match file. Every number is the shortest that reads back as the same double,
 // with two exceptions: rotations pass through a quaternion (they agree to about 1e-15), and a
 // sigma through degrees (it may move by one unit in the last place, once: a sigma that came from
-// a file is exact). Does not check `pair`.
+// a file is exact). Does not check `pair`. A column without an entry for each match is left out,
+// and so are all of a pair without matches.
 std::string FormatMatches(const FramePair& pair);
 
 // Writes `pair` to `path`, compressed if its name ends in ".gz": to a temporary file beside it,

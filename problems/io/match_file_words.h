@@ -25,6 +25,7 @@ enum KeywordId {
   kDistance,
   kNoise,
   kSequence,
+  kColumns,
   kMatches,
   kNumKeywords,
 };
@@ -32,11 +33,11 @@ enum KeywordId {
 struct Keyword {
   std::string_view name;
   std::string_view usage;  // the whole line; its words name the columns in messages
-  size_t columns;
+  size_t columns;          // or kAnyColumns
 };
 
-// Words of the longest line, that of a camera.
-inline constexpr size_t kMaxColumns = 16;
+// Words of a line that says itself how many it has.
+inline constexpr size_t kAnyColumns = 0;
 inline constexpr std::array<Keyword, kNumKeywords> kKeywords = {{
     {"format", "format rigmatch 1", 3},
     {"camera", "camera K pinhole FX FY CX CY WIDTH HEIGHT QW QX QY QZ SX SY SZ", 16},
@@ -53,8 +54,45 @@ inline constexpr std::array<Keyword, kNumKeywords> kKeywords = {{
     {"distance", "distance D SIGMA", 3},
     {"noise_px", "noise_px S", 2},
     {"sequence", "sequence NAME", 2},
+    {"columns", "columns NAME ...", kAnyColumns},
     {"matches", "matches N", 2},
 }};
+
+// The columns of a row. All rows have the first ones, up to kScore.
+enum ColumnId {
+  kCamera1,
+  kU1,
+  kV1,
+  kCamera2,
+  kU2,
+  kV2,
+  kScore,
+  kLandmark,
+  kSigma1,
+  kSigma2,
+  kDepth1,
+  kDepthSigma,
+  kA11,
+  kA12,
+  kA21,
+  kA22,
+  kAffineSigma,
+  kInlier,
+  kExactU1,
+  kExactV1,
+  kExactU2,
+  kExactV2,
+  kNumColumns,
+};
+
+inline constexpr std::array<std::string_view, kNumColumns> kColumnNames = {
+    "i",      "u",      "v",           "j",   "u2",  "v2",  "score", "landmark",     "sigma1",
+    "sigma2", "depth1", "depth_sigma", "a11", "a12", "a21", "a22",   "affine_sigma", "inlier",
+    "u0",     "v0",     "u20",         "v20"};
+inline constexpr size_t kNumDefaultColumns = kScore + 1;
+
+// Words of the longest line: `columns` with the name of each.
+inline constexpr size_t kMaxColumns = kNumColumns + 1;
 
 }  // namespace rigel::match_file
 

@@ -34,12 +34,13 @@ class MatchLines {
   bool NextLine();
 
   // Takes the next line if it is a plain row of a match between declared cameras, as nearly all
-  // lines are, without splitting it first: that is a third faster. False, without a message, for
-  // all other lines, valid or not: NextLine() then reads the line.
+  // lines of files without further columns are, without splitting it first: that is a third faster.
+  // False, without a message, for all other lines, valid or not: NextLine() then reads the line.
   bool TakePlainRow(int num_cameras, Match* match);
 
   int64_t line() const { return line_; }  // from 1
   size_t BytesLeft() const { return static_cast<size_t>(end_ - pos_); }
+  size_t num_columns() const { return num_columns_; }
   std::string_view Column(size_t column) const { return columns_[column]; }
 
   // The words of the line's columns for messages: the usage of its keyword.

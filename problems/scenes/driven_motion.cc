@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "rigel/problems/io/directory.h"
@@ -14,6 +15,11 @@ namespace {
 bool ListPoseFiles(const std::string& directory, std::vector<std::filesystem::path>* files,
                    std::string* error) {
   namespace fs = std::filesystem;
+  std::error_code ignored;
+  if (fs::is_regular_file(directory, ignored)) {
+    files->emplace_back(directory);
+    return true;
+  }
   const auto add = [&](const std::string& name, bool is_directory) {
     const fs::path file = fs::path(directory) / name;
     if (file.extension() == ".txt" && !is_directory) files->push_back(file);
@@ -28,12 +34,21 @@ bool ListPoseFiles(const std::string& directory, std::vector<std::filesystem::pa
   return true;
 }
 
+// The sequence, and gravity: "down" is the Y of KITTI's first frame.
+void StateDrive(const DrivenMotion& motion, const Eigen::Matrix3d& body_from_kitti,
+                FramePair* pair) {
+  const Eigen::Vector3d down = Eigen::Vector3d::UnitY();
+  pair->sequence = motion.sequence;
+  pair->prior.gravity1 = body_from_kitti * (motion.world_from_body1.R.transpose() * down);
+  pair->prior.gravity2 = body_from_kitti * (motion.world_from_body2.R.transpose() * down);
+}
+
 }  // namespace
 
-bool ReadDrivenMotions(const std::string& directory, int every, std::vector<DrivenMotion>* motions,
+bool ReadDrivenMotions(const std::string& path, int every, std::vector<DrivenMotion>* motions,
                        std::string* error) {
   std::vector<std::filesystem::path> files;
-  if (!ListPoseFiles(directory, &files, error)) return false;
+  if (!ListPoseFiles(path, &files, error)) return false;
   std::vector<DrivenMotion> result;
   for (const std::filesystem::path& file : files) {
     std::vector<Pose> poses;
@@ -43,7 +58,7 @@ bool ReadDrivenMotions(const std::string& directory, int every, std::vector<Driv
     }
   }
   if (result.empty()) {
-    *error = Printable(directory) + ": no motion: no file has two poses";
+    *error = Printable(path) + ": no motion: no file has two poses";
     return false;
   }
   *motions = std::move(result);
@@ -53,10 +68,20 @@ bool ReadDrivenMotions(const std::string& directory, int every, std::vector<Driv
 bool MakeDrivenPair(const SceneOptions& options, int index, const DrivenMotion& motion,
                     FramePair* pair, std::string* error) {
   if (!MakeScenePair(options, index, motion.body2_from_body1(), pair, error)) return false;
-  pair->sequence = motion.sequence;
-  const Eigen::Vector3d down = Eigen::Vector3d::UnitY();
-  pair->prior.gravity1 = motion.world_from_body1.R.transpose() * down;
-  pair->prior.gravity2 = motion.world_from_body2.R.transpose() * down;
+  StateDrive(motion, Eigen::Matrix3d::Identity(), pair);
+  return true;
+}
+
+bool MakeDrivenPair(const StreetOptions& options, int index, const DrivenMotion& motion,
+                    FramePair* pair, std::string* error) {
+  const Pose driven = motion.body2_from_body1();
+  Eigen::Matrix3d body_from_kitti;  // x right, y down, z forward
+  body_from_kitti << options.axes.Right(), options.axes.down, options.axes.forward;
+  Pose truth;
+  truth.R = body_from_kitti * driven.R * body_from_kitti.transpose();
+  truth.t = body_from_kitti * driven.t;
+  if (!MakeStreetPair(options, index, truth, pair, error)) return false;
+  StateDrive(motion, body_from_kitti, pair);
   return true;
 }
 

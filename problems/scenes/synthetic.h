@@ -21,6 +21,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "rigel/core/frame_pair.h"
 
@@ -39,27 +40,46 @@ inline constexpr int kMaxRing = 16;
 // Cameras of 77 degrees: neighbours of a ring of fewer see nothing in common.
 inline constexpr int kMinRingOfNeighbours = 5;
 
-struct SceneOptions {
+// Distributions of the noise on one coordinate, for a stated sigma:
+//   kGaussian  of that standard deviation
+//   kMixture   Gaussian, 80 percent of 0.6 sigma and 20 percent of 3 sigma
+//   kLaplace   of that standard deviation
+//   kStudent3  Student's t with three degrees of freedom, of that standard deviation
+enum class NoiseModel { kGaussian, kMixture, kLaplace, kStudent3 };
+
+// "gaussian", "mixture", "laplace", "t3". False if there is no such name.
+bool ParseNoiseModel(std::string_view name, NoiseModel* model);
+
+// What the matches of a scene are like: of this one, and of the street (street.h).
+struct SceneMatchOptions {
+  int num_matches = 200;
+  double noise_px = 0.5;                // sigma on each image coordinate of both views
+  std::vector<double> camera_noise_px;  // the same of each camera instead; empty: noise_px
+  NoiseModel noise_model = NoiseModel::kGaussian;
+  double inter_share = 0.0;    // of the matches; needs two cameras
+  double outlier_share = 0.0;  // second point uniform in the image
+  double moving_share = 0.0;   // on the car; none of them an outlier
+  bool match_scores = false;   // else all 0, unknown
+  uint64_t seed = 1;
+
+  bool AreMatchesValid(int num_cameras, std::string* error) const;
+};
+
+struct SceneOptions : SceneMatchOptions {
   // 1 to 4, the third and fourth at (0, 0.4, 0.3) and (0, -0.4, 0.3) m; of a ring 1 to kMaxRing.
   int num_cameras = 2;
   bool ring = false;
-  int num_matches = 200;
-  double noise_px = 0.5;      // 1-sigma on each image coordinate of both views
   double rotation_deg = 1.0;  // about the axis, exactly
   RotationAxisPattern rotation_axis = RotationAxisPattern::kY;
   MotionPattern motion = MotionPattern::kForward;  // |t| = 1 m; forward +z, sideways +x
-  double inter_share = 0.0;                        // of the matches; needs two cameras
-  double outlier_share = 0.0;                      // second point uniform in the image
-  double moving_share = 0.0;                       // on the car; none of them an outlier
-  bool match_scores = false;                       // else all 0, unknown
-  uint64_t seed = 1;
 
   bool IsValid(std::string* error) const;
 };
 
 // Pair number `index` of the scene: it depends on the seed and the index alone. With truth, exact
-// gravity, axis and (planar motion) normal. False with a message if the options are invalid, or if
-// hardly any point is seen in both views (motion out of view).
+// gravity, axis and (planar motion) normal, and with the columns `inlier` and `exact`. False with a
+// message if the options are invalid, or if hardly any point is seen in both views (motion out of
+// view).
 bool MakeScenePair(const SceneOptions& options, int index, FramePair* pair, std::string* error);
 
 // The same with a given motion and gravity instead of the pattern's.

@@ -16,5 +16,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   Require(rigel::ParseMatches(rigel::FormatMatches(pair), "again", &again, &error),
           "what was written can be read: " + error);
   Require(again.matches.size() == pair.matches.size(), "all matches come back");
+  Require(again.columns.landmark == pair.columns.landmark &&
+              again.columns.sigma1 == pair.columns.sigma1 &&
+              again.columns.affine == pair.columns.affine &&
+              again.columns.inlier == pair.columns.inlier &&
+              again.columns.exact == pair.columns.exact,
+          "their columns come back");
   return 0;
 }

@@ -192,6 +192,7 @@ TEST(EstimateMotion, RefusesAPairThatItCannotUse) {
 
   pair = good;
   pair.matches.resize(3);
+  pair.columns = MatchColumns();
   EXPECT_EQ(status_of("4pt", pair, "3 matches"), EstimateStatus::kTooFewMatches);
   pair.matches.clear();
   EXPECT_EQ(status_of("4pt", pair, "0 matches"), EstimateStatus::kTooFewMatches);
@@ -205,6 +206,7 @@ TEST(EstimateMotion, OneMatchManyTimesOverHasNoSolution) {
     FramePair pair = ScenePair(SceneOptions(), 1);
     if (still) pair.matches[0].pixel2 = pair.matches[0].pixel1;
     pair.matches.assign(20, pair.matches[0]);
+    pair.columns = MatchColumns();
     EstimateOptions options = With("4pt");
     options.ransac.max_iterations = 500;
     const MotionEstimate estimate = EstimateMotion(options, pair);

@@ -266,6 +266,7 @@ TEST(Refine, TooFewInliersAreDegenerateAndThePoseStays) {
     for (const int count : {0, 1}) {
       FramePair pair = full;
       pair.matches.resize(count);
+      pair.columns = MatchColumns();
       Pose pose = *full.truth;
       RefineOptions options;
       options.form = form;
@@ -295,6 +296,7 @@ TEST(Refine, AnUndeterminedMotionHasNoCovarianceAndNothingObservable) {
   SceneOptions scene;
   FramePair pair = ScenePair(scene, 1);
   pair.matches.assign(50, pair.matches[0]);
+  pair.columns = MatchColumns();
   Pose pose = *pair.truth;
   RefineOptions options;
   options.noise_px = 0.5;

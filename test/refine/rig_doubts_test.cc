@@ -110,6 +110,7 @@ TEST(RigDoubts, OneWayStereoIsNotCalledStandingStill) {
     if (m.camera1 == 0 && m.camera2 == 1) one_way.push_back(m);
   }
   pair.matches = one_way;
+  pair.columns = MatchColumns();
   const MotionEstimate e = EstimateMotion(EstimateOptions(), pair);
   ASSERT_EQ(e.status, EstimateStatus::kSuccess);
   EXPECT_TRUE(e.refine.rotation_observable);

@@ -337,7 +337,7 @@ TEST_F(CompareTest, PairWithoutThePriorOfItsSolverIsAFailureAndNoError) {
 TEST_F(CompareTest, DegenerateFilesCountAsFailures) {
   const std::string matches = Simulate("in", {"--pairs=3", "--inter_share=0.5"});
   const std::string text = ReadText(matches + "/000000.matches");
-  const std::string header = text.substr(0, text.find("\nmatches") + 1);
+  const std::string header = text.substr(0, text.find("\ncolumns") + 1);
   std::string same = header + "matches 50\n";
   for (int k = 0; k < 50; ++k) same += "0 100 100 0 110 101 0\n";
   WriteText(matches + "/same.matches", same);

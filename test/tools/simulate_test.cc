@@ -125,6 +125,74 @@ TEST_F(SimulateTest, CarsAndScoresAreWrittenWhereAskedFor) {
   EXPECT_EQ(moved, 60);
 }
 
+// A rig of two cameras that look ahead, on a body with x forward and z up.
+constexpr char kRig[] = R"({"format": "rigel-rig 1", "cameras": [
+  {"model": "pinhole", "parameters": [400, 400, 320, 240], "width": 640, "height": 480,
+   "q": [0.5, -0.5, 0.5, -0.5], "s": [1.7, 0.3, 1.3]},
+  {"model": "opencv", "parameters": [400, 400, 320, 240, 0.1, 0, 0, 0], "width": 640,
+   "height": 480, "q": [0.5, -0.5, 0.5, -0.5], "s": [1.7, -0.3, 1.3]}]})";
+
+TEST_F(SimulateTest, StreetWithARigFile) {
+  WriteText(Path("rig.json"), kRig);
+  const Args args = {
+      "--scene=street", "--rig=" + Path("rig.json"), "--pairs=3",           "--rotation_deg=3",
+      "--distance_m=2", "--inter_share=0.25",        "--outlier_share=0.1", "--moving_share=0.1"};
+  const Outcome run = RunTool("simulate", args + Args{"--output=" + Path("a")});
+  ASSERT_EXIT_CODE(run, 0);
+  EXPECT_THAT(run.err, HasSubstr("rig.json: the distortion of 1 of 2 cameras is left out"));
+  EXPECT_THAT(run.err, HasSubstr("rig.json: taken from the cameras: down -z, forward +x"));
+  for (const FramePair& pair : ReadAll(Path("a"))) {
+    EXPECT_EQ(pair.rig.size(), 2);
+    EXPECT_EQ(pair.matches.size(), 200u);
+    EXPECT_NEAR(pair.truth->t.norm(), 2.0, 1e-12);
+    EXPECT_LT(pair.truth->t.x(), -1.9);
+    int inliers = 0;
+    for (const char inlier : pair.columns.inlier) inliers += inlier;
+    EXPECT_EQ(inliers, 160);
+    EXPECT_EQ(pair.columns.exact.size(), 200u);
+  }
+  EXPECT_EQ(Bytes(Path("a")), Bytes(Simulate("b", args + Args{"--threads=3"})));
+
+  WriteText(Path("06.txt"), "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0.9\n");
+  const std::vector<FramePair> driven =
+      ReadAll(Simulate("driven", {"--scene=street", "--rig=" + Path("rig.json"),
+                                  "--poses=" + Path("06.txt"), "--camera_noise_px=0.2,0.7"}));
+  ASSERT_EQ(driven.size(), 1u);
+  EXPECT_EQ(driven[0].sequence, "06");
+  EXPECT_LT((driven[0].truth->t - Eigen::Vector3d(-0.9, 0, 0)).norm(), 1e-12);
+  EXPECT_EQ(driven[0].columns.sigma1.size(), 200u);
+}
+
+TEST_F(SimulateTest, WrongFlagsOfTheStreet) {
+  WriteText(Path("rig.json"), kRig);
+  const std::string rig = "--rig=" + Path("rig.json");
+  const struct {
+    Args args;
+    int code;
+    const char* what;
+  } wrong[] = {
+      {{"--scene=road"}, 2, "expected box or street"},
+      {{"--scene=street"}, 2, "--rig is missing"},
+      {{rig}, 2, "--rig: is of --scene=street"},
+      {{"--motion=car"}, 2, "A car needs --scene=street"},
+      {{"--scene=street", rig, "--motion=planar"}, 2, "expected car"},
+      {{"--scene=street", rig, "--ring"}, 2, "--ring: is of --scene=box"},
+      {{"--scene=street", rig, "--distance_m=-1"}, 2, "--distance_m must be finite"},
+      {{"--scene=street", rig, "--ground_m=-5"}, 2, "--ground_m must put the ground below"},
+      {{"--scene=street", rig, "--camera_noise_px=1,2,3"}, 2, "each of the 2 cameras"},
+      {{"--camera_noise_px=1,x"}, 2, "expected numbers, separated by commas"},
+      {{"--camera_noise_px=1,1", "--noise_px=1"}, 2, "--camera_noise_px replaces it"},
+      {{"--noise_model=cauchy"}, 2, "expected gaussian, mixture, laplace or t3"},
+      {{"--scene=street", "--rig=" + Path("none.json")}, 1, "none.json: cannot be opened"},
+  };
+  for (const auto& c : wrong) {
+    const Outcome run = RunTool("simulate", c.args + Args{"--output=" + Path("out")});
+    EXPECT_EXIT_CODE(run, c.code);
+    EXPECT_THAT(run.err, HasSubstr(c.what));
+  }
+  EXPECT_FALSE(std::filesystem::exists(Path("out")));
+}
+
 TEST_F(SimulateTest, NoMatchesAreAFileToo) {
   const std::vector<FramePair> pairs = ReadAll(Simulate("none", {"--num_matches=0", "--pairs=1"}));
   ASSERT_EQ(pairs.size(), 1u);

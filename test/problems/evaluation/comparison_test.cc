@@ -31,18 +31,23 @@ PairResult Solved(double raw_deg, double refined_deg) {
 TEST(Comparison, SelectMatchesKeepsAKindInItsOrder) {
   SceneOptions scene;
   scene.inter_share = 0.3;
-  const FramePair pair = ScenePair(scene, 1);
+  FramePair pair = ScenePair(scene, 1);
+  for (int k = 0; k < 200; ++k) pair.columns.landmark.push_back(k);
   for (const MatchUse use : {MatchUse::kAll, MatchUse::kIntra, MatchUse::kInter}) {
     FramePair selected = pair;
     SelectMatches(use, &selected);
     EXPECT_EQ(selected.matches.size(), use == MatchUse::kAll     ? 200u
                                        : use == MatchUse::kIntra ? 140u
                                                                  : 60u);
+    std::string error;
+    ASSERT_TRUE(selected.IsValid(&error)) << error;
     size_t k = 0;
-    for (const Match& m : pair.matches) {
+    for (int row = 0; row < 200; ++row) {
+      const Match& m = pair.matches[row];
       if (use != MatchUse::kAll && m.IsIntra() != (use == MatchUse::kIntra)) continue;
       ASSERT_LT(k, selected.matches.size());
       EXPECT_EQ(selected.matches[k].pixel2, m.pixel2);
+      EXPECT_EQ(selected.columns.landmark[k], row);
       ++k;
     }
   }
@@ -136,6 +141,7 @@ TEST(Comparison, RunSolverFillsResultsInTheOrderOfTheInput) {
     pairs.back().sequence = "s" + std::to_string(index);
   }
   pairs[3].matches.resize(2);
+  pairs[3].columns = MatchColumns();
   pairs[4].prior = MotionPrior();
   pairs[5].truth.reset();
   EstimateOptions options;

@@ -162,6 +162,7 @@ TEST(CramerRao, GrowsWithTheNoiseAndFallsWithTheRootOfTheMatches) {
   options.threshold_px = 10.0;
   const auto bound = ComputeCramerRaoBound(options, pair);
   FramePair twice = pair;
+  twice.columns = MatchColumns();
   twice.matches.insert(twice.matches.end(), pair.matches.begin(), pair.matches.end());
   EXPECT_NEAR(ComputeCramerRaoBound(options, twice)->rotation, bound->rotation / std::sqrt(2.0),
               1e-9);
@@ -215,6 +216,7 @@ TEST(CramerRao, ChanceOutliersAreNoInformation) {
       };
       pair.matches.erase(std::remove_if(pair.matches.begin(), pair.matches.end(), is_outlier),
                          pair.matches.end());
+      pair.columns = MatchColumns();
       const auto of_inliers = ComputeCramerRaoBound(RefineOptions(), pair);
       ASSERT_TRUE(bound.has_value() && of_inliers.has_value());
       off += std::abs(bound->direction / of_inliers->direction - 1.0) / kPairs;
@@ -234,6 +236,7 @@ TEST(CramerRao, ThereIsNoneWithoutTruthNoiseOrInformation) {
   without.noise_px.reset();
   EXPECT_FALSE(ComputeCramerRaoBound(RefineOptions(), without).has_value());
   without = pair;
+  without.columns = MatchColumns();
   without.matches.resize(3);
   EXPECT_FALSE(ComputeCramerRaoBound(RefineOptions(), without).has_value());
   without.matches.clear();

@@ -123,6 +123,15 @@ inline void ExpectSame(const FramePair& a, const FramePair& b) {
                        ma.camera2 == mb.camera2 && ma.pixel2 == mb.pixel2 && ma.score == mb.score);
   }
   EXPECT_EQ(num_different, 0);
+  EXPECT_EQ(a.columns.landmark, b.columns.landmark);
+  EXPECT_EQ(a.columns.sigma1, b.columns.sigma1);
+  EXPECT_EQ(a.columns.sigma2, b.columns.sigma2);
+  EXPECT_EQ(a.columns.depth1, b.columns.depth1);
+  EXPECT_EQ(a.columns.depth_sigma, b.columns.depth_sigma);
+  EXPECT_EQ(a.columns.affine, b.columns.affine);
+  EXPECT_EQ(a.columns.affine_sigma, b.columns.affine_sigma);
+  EXPECT_EQ(a.columns.inlier, b.columns.inlier);
+  EXPECT_EQ(a.columns.exact, b.columns.exact);
 }
 
 // A pair with everything in it and numbers of full length, over many magnitudes.

@@ -53,6 +53,10 @@ TEST_F(DrivenMotions, MotionsAreBetweenNeighboursOfOneFile) {
   EXPECT_EQ(motions[4].sequence, "01");
   EXPECT_EQ(motions[4].body2_from_body1().t.norm(), 0.0);
 
+  ASSERT_TRUE(ReadDrivenMotions(directory_ + "/01.txt", 1, &motions, &error)) << error;
+  ASSERT_EQ(motions.size(), 1u);
+  EXPECT_EQ(motions[0].sequence, "01");
+
   ASSERT_TRUE(ReadDrivenMotions(directory_, 2, &motions, &error)) << error;
   ASSERT_EQ(motions.size(), 3u);
   EXPECT_EQ(motions[1].world_from_body1.t.z(), motions[0].world_from_body1.t.z() + 2.0);

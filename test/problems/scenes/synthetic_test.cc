@@ -117,6 +117,33 @@ TEST(Synthetic, SharesAreExact) {
   }
 }
 
+TEST(Synthetic, ColumnsSayWhatIsAnInlierAndWhereItsPointsAre) {
+  SceneOptions options;
+  options.inter_share = 0.3;
+  options.outlier_share = 0.2;
+  options.moving_share = 0.1;
+  const FramePair pair = ScenePair(options, 4);
+  SceneOptions exact = options;
+  exact.noise_px = 0.0;
+  const FramePair reference = ScenePair(exact, 4);
+  ASSERT_EQ(pair.columns.inlier.size(), 200u);
+  EXPECT_TRUE(pair.columns.sigma1.empty());
+  int inliers = 0, outliers = 0;
+  for (size_t k = 0; k < pair.matches.size(); ++k) {
+    const Match& m = pair.matches[k];
+    const std::array<double, 4>& e = pair.columns.exact[k];
+    const bool own = Pixel(e[0], e[1]) == m.pixel1 && Pixel(e[2], e[3]) == m.pixel2;
+    outliers += own;
+    inliers += pair.columns.inlier[k];
+    EXPECT_FALSE(own && pair.columns.inlier[k] == 1);
+    if (own) continue;
+    EXPECT_EQ(Pixel(e[0], e[1]), reference.matches[k].pixel1);
+    EXPECT_EQ(Pixel(e[2], e[3]), reference.matches[k].pixel2);
+  }
+  EXPECT_EQ(inliers, 140);
+  EXPECT_EQ(outliers, 40);
+}
+
 TEST(Synthetic, NoiseHasTheStatedSigmaInAllFourCoordinates) {
   SceneOptions noisy, clean;
   noisy.noise_px = 0.7;
@@ -318,6 +345,7 @@ TEST(Synthetic, TheCarsMatchesAgreeOnAMotionOfTheirOwn) {
     // Alone they give a motion that holds them all, turns about the vertical and is not the rig's.
     FramePair car = pair;
     car.matches = moving;
+    car.columns = MatchColumns();
     EstimateOptions estimate;
     estimate.solver = "4pt";
     estimate.ransac.threshold_px = 0.1;

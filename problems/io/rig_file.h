@@ -1,0 +1,47 @@
+// Rig files: the calibration of a camera rig as JSON, format `rigel-rig 1`.
+//
+//   {"format": "rigel-rig 1", "name": NAME, "ground_m": G, "down": [x, y, z], "forward": [x, y, z],
+//    "cameras": [{"name": NAME, "model": MODEL, "parameters": [...], "width": W, "height": H,
+//                 "q": [w, x, y, z], "s": [x, y, z]}, ...]}
+//
+// Required are `cameras`, at least one, and of each camera all but its name. q and s are
+// body_from_camera. `model` and `parameters` are COLMAP's names, in lower case, and its orders:
+// pinhole, simple_pinhole, simple_radial, radial, opencv, full_opencv. Files without `format` may
+// state a camera by the older keys instead of `parameters`: `fx`, `fy`, `cx`, `cy` and
+// `distortion`, with a model `pinhole`, or one that begins with `radial` (k1 k2 k3) or `brown`
+// (k1 k2 p1 p2 k3). Other keys are not looked at.
+#ifndef RIGEL_PROBLEMS_IO_RIG_FILE_H_
+#define RIGEL_PROBLEMS_IO_RIG_FILE_H_
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "rigel/core/rig.h"
+
+namespace rigel {
+
+struct RigFile {
+  std::string name;  // may be empty
+  Rig rig;
+  std::vector<std::string> camera_names;         // the number where a camera has no name
+  std::optional<double> ground_m;                // how far the ground is below the body's origin
+  std::optional<Eigen::Vector3d> down, forward;  // unit vectors of the body frame
+  // Cameras whose distortion was left out: the pinhole part of their models is used.
+  int num_undistorted = 0;
+};
+
+// False with a message of one line, which names the file, the camera and what was expected, if the
+// file cannot be read, is no such JSON, or has a model that is not one of these (fisheye, omni).
+// *rig is then unchanged. The rig passes Rig::IsValid, and its image sizes are positive.
+bool ReadRigFile(const std::string& path, RigFile* rig, std::string* error);
+
+// The same for text in memory; `name` stands for the path in messages.
+bool ParseRigFile(std::string_view text, const std::string& name, RigFile* rig, std::string* error);
+
+}  // namespace rigel
+
+#endif  // RIGEL_PROBLEMS_IO_RIG_FILE_H_

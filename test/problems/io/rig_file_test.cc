@@ -1,0 +1,191 @@
+// Rig files: both kinds of keys, what is left out, what is refused.
+#include "rigel/problems/io/rig_file.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "rigel/test/problems/io/match_file_text.h"
+
+namespace rigel {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr char kRest[] =
+    R"("width": 640, "height": 480, "q": [0.6, 0.8, 0, 0], "s": [0.5, -0.1, 2]})";
+
+// A file of one camera with these keys and valid others.
+std::string OneCamera(const std::string& keys) {
+  return R"({"format": "rigel-rig 1", "cameras": [{"name": "front", )" + keys + ", " + kRest + "]}";
+}
+
+RigFile MustRead(const std::string& text) {
+  RigFile rig;
+  std::string error;
+  EXPECT_TRUE(ParseRigFile(text, "rig.json", &rig, &error)) << error;
+  EXPECT_TRUE(rig.rig.IsValid(&error)) << error;
+  return rig;
+}
+
+TEST(RigFile, ReadsEveryField) {
+  const RigFile file = MustRead(
+      R"({"format": "rigel-rig 1", "name": "car", "ground_m": 0.4, "down": [0, 0, -1],
+          "forward": [1, 0, 0], "cameras": [
+          {"name": "front", "model": "pinhole", "parameters": [700, 701, 320, 240], )" +
+      std::string(kRest) + R"(, {"model": "opencv", "parameters": [1, 2, 3, 4, 0, 0, 0, 1e-3], )" +
+      kRest + "]}");
+  EXPECT_EQ(file.name, "car");
+  EXPECT_EQ(file.ground_m, 0.4);
+  EXPECT_EQ(file.down, -Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(file.forward, Eigen::Vector3d::UnitX());
+  EXPECT_EQ(file.camera_names, (std::vector<std::string>{"front", "1"}));
+  EXPECT_EQ(file.num_undistorted, 1);
+  ASSERT_EQ(file.rig.size(), 2);
+  const RigCamera& camera = file.rig.cameras[0];
+  EXPECT_EQ(camera.intrinsics.fx, 700);
+  EXPECT_EQ(camera.intrinsics.fy, 701);
+  EXPECT_EQ(camera.intrinsics.cx, 320);
+  EXPECT_EQ(camera.intrinsics.cy, 240);
+  EXPECT_EQ(camera.intrinsics.width, 640);
+  EXPECT_EQ(camera.intrinsics.height, 480);
+  EXPECT_EQ(camera.s, Eigen::Vector3d(0.5, -0.1, 2));
+  // w x y z: about X with cos a = 0.36 - 0.64, sin a = 2 * 0.6 * 0.8.
+  Eigen::Matrix3d Q;
+  Q << 1, 0, 0, 0, -0.28, -0.96, 0, 0.96, -0.28;
+  EXPECT_LT((camera.Q - Q).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_EQ(file.rig.cameras[1].intrinsics.cy, 4);
+}
+
+TEST(RigFile, PinholePartOfEachModel) {
+  const struct {
+    const char* keys;
+    double fy, cy;
+    int undistorted;
+  } cases[] = {
+      {R"("model": "simple_pinhole", "parameters": [7, 3, 4])", 7, 4, 0},
+      {R"("model": "simple_radial", "parameters": [7, 3, 4, 0.1])", 7, 4, 1},
+      {R"("model": "radial", "parameters": [7, 3, 4, 0, 0])", 7, 4, 0},
+      {R"("model": "full_opencv", "parameters": [7, 8, 3, 4, 0, 0, 0, 0, 0, 0, 0, 1])", 8, 4, 1},
+      {R"("model": "pinhole", "fx": 7, "fy": 8, "cx": 3, "cy": 4)", 8, 4, 0},
+      {R"("model": "pinhole", "fx": 7, "fy": 8, "cx": 3, "cy": 4, "distortion": [])", 8, 4, 0},
+      {R"("model": "radial k1 k2 k3", "fx": 7, "fy": 8, "cx": 3, "cy": 4,
+          "distortion": [0.1, 0, 0])",
+       8, 4, 1},
+      {R"("model": "brown k1 k2 p1 p2 k3", "fx": 7, "fy": 8, "cx": 3, "cy": 4,
+          "distortion": [0, 0, 0, 0, 0])",
+       8, 4, 0},
+  };
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.keys);
+    const RigFile file = MustRead(OneCamera(c.keys));
+    ASSERT_EQ(file.rig.size(), 1);
+    const PinholeCamera& camera = file.rig.cameras[0].intrinsics;
+    EXPECT_EQ(camera.fx, 7);
+    EXPECT_EQ(camera.fy, c.fy);
+    EXPECT_EQ(camera.cx, 3);
+    EXPECT_EQ(camera.cy, c.cy);
+    EXPECT_EQ(file.num_undistorted, c.undistorted);
+  }
+}
+
+TEST(RigFile, BrokenOnesAreRefused) {
+  const std::string good = OneCamera(R"("model": "pinhole", "parameters": [7, 8, 3, 4])");
+  const struct {
+    std::string from, to;
+    const char* phrase;
+  } cases[] = {
+      {good, "", "parse error"},
+      {good, "{", "parse error"},
+      {good, "[]", "an array, expected an object with 'cameras'"},
+      {good, "{}", "no 'cameras', expected an array"},
+      {good, R"({"cameras": []})", "expected an array of at least one camera"},
+      {good, R"({"cameras": [3]})", "camera 0: '3', expected an object"},
+      {"rigel-rig 1", "rigel-rig 2", "expected 'rigel-rig 1'"},
+      {"\"cameras\"", "\"ground_m\": \"x\", \"cameras\"", "ground_m is '\"x\"', expected a number"},
+      {"\"cameras\"", "\"down\": [0, 0, 2], \"cameras\"", "down has a norm that is not 1"},
+      {"\"cameras\"", "\"forward\": [0, 1], \"cameras\"", "forward has 2 entries, expected 3"},
+      {"\"front\"", "7", "camera 0: name is '7', expected a text"},
+      {"\"model\"", "\"kind\"", "camera 0 (front): no 'model', expected the name"},
+      {"pinhole", "opencv_fisheye", "camera 0 (front): camera model 'opencv_fisheye' is not read"},
+      {"pinhole", "omni", "camera 0 (front): camera model 'omni' is not read, expected pinhole"},
+      {"pinhole", "PINHOLE", "camera model 'PINHOLE' is not read"},
+      {"[7, 8, 3, 4]", "[7, 8, 3]", "parameters has 3 entries, expected 4 numbers"},
+      {"[7, 8, 3, 4]", "7", "parameters has '7', expected 4 numbers"},
+      {"[7, 8, 3, 4]", "[7, 0, 3, 4]", "a focal length that is not positive, expected"},
+      {"[7, 8, 3, 4]", "[7, null, 3, 4]", "parameters is 'null', expected a number"},
+      {"[7, 8, 3, 4]", "[7, 8, 3, 4], \"fx\": 7", "'parameters' and 'fx', expected one of them"},
+      {"\"parameters\"", "\"values\"", "no 'fx', expected 'parameters', or 'fx', 'fy', 'cx'"},
+      {"640", "0", "width is '0', expected an integer from 1"},
+      {"480", "480.5", "height is '480.5', expected an integer from 1"},
+      {"\"height\"", "\"tall\"", "no 'height', expected the size of the image"},
+      {"[0.6, 0.8, 0, 0]", "[0.6, 0.7, 0, 0]", "q has a norm that is not 1, expected"},
+      {"[0.6, 0.8, 0, 0]", "[0.6, 0.8, 0]", "q has 3 entries, expected 4 numbers"},
+      {"[0.5, -0.1, 2]", "[0.5, -0.1, 1e999]", "number overflow"},
+      {"\"s\"", "\"t\"", "no 's', expected the position"},
+  };
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.phrase);
+    RigFile rig;
+    rig.name = "untouched";
+    std::string error;
+    EXPECT_FALSE(ParseRigFile(Replace(good, c.from, c.to), "a\nb.json", &rig, &error));
+    EXPECT_THAT(error, testing::StartsWith("a\\x0ab.json: "));
+    EXPECT_THAT(error, HasSubstr(c.phrase));
+    EXPECT_TRUE(IsOnePrintableLine(error)) << error;
+    EXPECT_EQ(rig.name, "untouched");
+  }
+}
+
+TEST(RigFile, OlderModelsThatAreRefused) {
+  for (const char* model : {"equidistant (kalibr) k1 k2 k3 k4", "Fisheye624 k0..k5"}) {
+    RigFile rig;
+    std::string error;
+    EXPECT_FALSE(ParseRigFile(
+        OneCamera(R"("fx": 7, "fy": 8, "cx": 3, "cy": 4, "model": ")" + std::string(model) + "\""),
+        "rig.json", &rig, &error));
+    EXPECT_THAT(error, HasSubstr("rig.json: camera 0 (front): camera model '"));
+    EXPECT_THAT(error, HasSubstr(std::string(model).substr(0, 10)));
+  }
+  RigFile rig;
+  std::string error;
+  EXPECT_FALSE(ParseRigFile(OneCamera(R"("fx": 7, "fy": 8, "cx": 3, "cy": 4, "model": "radial",
+                                         "distortion": [0, 0])"),
+                            "rig.json", &rig, &error));
+  EXPECT_THAT(error, HasSubstr("distortion has 2 entries, expected 3 numbers"));
+}
+
+TEST(RigFile, ReadsAFile) {
+  const TempDir dir;
+  RigFile rig;
+  std::string error;
+  EXPECT_FALSE(ReadRigFile(dir / "none.json", &rig, &error));
+  EXPECT_THAT(error, HasSubstr("none.json: cannot be opened"));
+  WriteText(dir / "rig.json", OneCamera(R"("model": "pinhole", "parameters": [7, 8, 3, 4])"));
+  EXPECT_TRUE(ReadRigFile(dir / "rig.json", &rig, &error)) << error;
+  EXPECT_EQ(rig.rig.size(), 1);
+}
+
+TEST(RigFile, RealRigs) {
+  const char* root = std::getenv("RIGEL_REAL_DATA");
+  if (root == nullptr || *root == '\0') GTEST_SKIP() << "RIGEL_REAL_DATA is not set";
+  int num_read = 0, num_refused = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(root) + "/rigs")) {
+    RigFile rig;
+    std::string error;
+    if (ReadRigFile(entry.path().string(), &rig, &error)) {
+      ++num_read;
+    } else {
+      ++num_refused;
+      EXPECT_THAT(error, HasSubstr("is not read, expected pinhole"));
+    }
+  }
+  EXPECT_EQ(num_read, 8);
+  EXPECT_EQ(num_refused, 2);
+}
+
+}  // namespace
+}  // namespace rigel
