@@ -43,8 +43,9 @@ Json CompleteEntry() {
   SolverSummary s;
   s.raw_rotation_deg = s.raw_direction_deg = s.raw_scale = Statistics();
   s.refined_rotation_deg = s.refined_direction_deg = s.refined_scale = Statistics();
+  s.refined_rig_direction_deg = s.bound_rig_direction_deg = Statistics();
   s.bound_rotation_deg = s.bound_direction_deg = Statistics();
-  s.nees_ratio = 1.0;
+  s.nees = s.nees_rotation = s.nees_rig_direction = NeesStatistics();
   s.inlier_ratio = s.iterations = s.ransac_ms = s.refine_ms = Statistics();
   return SummaryJson(s);
 }

@@ -37,19 +37,28 @@ struct ComparisonOptions {
 
 // Errors of one motion. An error that does not exist is left out:
 //   - of the direction, where the true translation is too short (kMinTrueTranslation) or the
-//     direction is not observable;
+//     direction is not observable; of the rig's direction, the same for the motion of the rig's
+//     centre (rig_centre.h);
 //   - of the scale, where it is not observable; without a refinement, where no match is between two
 //     cameras.
 struct MotionErrors {
   double rotation = 0.0;  // radians
   std::optional<double> direction;
-  std::optional<double> scale;  // fraction
+  std::optional<double> scale;          // fraction
+  std::optional<double> rig_direction;  // of a refined motion
 };
 
 // The part of a CramerRaoBound that reports show.
 struct MotionBound {
-  double rotation = 0.0;            // radians
-  std::optional<double> direction;  // none where the true motion has none
+  double rotation = 0.0;                           // radians
+  std::optional<double> direction, rig_direction;  // none where the true motion has none
+};
+
+// A normalized estimation error squared (NEES): a refined error, weighted by the inverse of its
+// covariance. If the covariance is right, the mean over many pairs is `dof`.
+struct NormalizedError {
+  double value = 0.0;
+  int dof = 0;
 };
 
 struct PairResult {
@@ -59,10 +68,11 @@ struct PairResult {
   std::string message;
   std::optional<MotionErrors> raw, refined;
   std::optional<MotionBound> bound;
-  // Normalized estimation error squared (NEES): the refined error, weighted by the inverse of its
-  // covariance. If the covariance is right, the mean over many pairs is nees_dof.
-  std::optional<double> nees;
-  int nees_dof = 0;  // 6, or 5 where |t| was held
+  // Of rotation and translation: 6 degrees of freedom, or the rank of the covariance; of pairs
+  // whose direction is observable.
+  std::optional<NormalizedError> nees;
+  std::optional<NormalizedError> nees_rotation;       // of the rotation's block: 3
+  std::optional<NormalizedError> nees_rig_direction;  // where that has an error: 2
   double inlier_ratio = 0.0;
   int iterations = 0;
   std::string doubt;                           // MotionEstimate::doubt; empty if there is none
@@ -91,6 +101,14 @@ std::vector<PairResult> RunSolver(const std::vector<FramePair>& pairs,
                                   const std::function<void()>& progress,
                                   bool use_stated_noise = true);
 
+// Mean NEES over mean degrees of freedom, and the 99 percent interval of this ratio if the
+// covariance is right.
+struct NeesStatistics {
+  double ratio = 0.0;
+  double dof = 0.0;
+  double low = 0.0, high = 0.0;
+};
+
 struct SolverResults {
   std::string solver;
   std::vector<PairResult> pairs;
@@ -105,11 +123,9 @@ struct SolverSummary {
   int direction_pairs = 0;
   std::optional<Statistics> raw_rotation_deg, raw_direction_deg, raw_scale;
   std::optional<Statistics> refined_rotation_deg, refined_direction_deg, refined_scale;
-  std::optional<Statistics> bound_rotation_deg, bound_direction_deg;
-  // Mean NEES over mean degrees of freedom, and the 99 percent interval of this ratio if the
-  // covariance is right.
-  std::optional<double> nees_ratio;
-  double nees_dof = 0.0, nees_low = 0.0, nees_high = 0.0;
+  std::optional<Statistics> refined_rig_direction_deg;
+  std::optional<Statistics> bound_rotation_deg, bound_direction_deg, bound_rig_direction_deg;
+  std::optional<NeesStatistics> nees, nees_rotation, nees_rig_direction;
   std::optional<Statistics> inlier_ratio, iterations, ransac_ms, refine_ms;
 };
 

@@ -19,7 +19,12 @@ Json ErrorsJson(const MotionErrors& errors) {
   Json object = {{"rotation_deg", RadToDeg(errors.rotation)}};
   if (errors.direction) object["translation_dir_deg"] = RadToDeg(*errors.direction);
   if (errors.scale) object["scale"] = *errors.scale;
+  if (errors.rig_direction) object["rig_direction_deg"] = RadToDeg(*errors.rig_direction);
   return object;
+}
+
+void PutNees(const char* key, const std::optional<NormalizedError>& nees, Json* object) {
+  if (nees) (*object)[key] = {{"value", nees->value}, {"degrees_of_freedom", nees->dof}};
 }
 
 Json ResultJson(const PairResult& r) {
@@ -27,8 +32,13 @@ Json ResultJson(const PairResult& r) {
   if (r.failed) object["message"] = r.message;
   if (r.raw) object["raw"] = ErrorsJson(*r.raw);
   if (r.refined) object["refined"] = ErrorsJson(*r.refined);
-  if (r.bound) object["bound"] = ErrorsJson({r.bound->rotation, r.bound->direction, {}});
-  if (r.nees) object["nees"] = {{"value", *r.nees}, {"degrees_of_freedom", r.nees_dof}};
+  if (r.bound) {
+    object["bound"] =
+        ErrorsJson({r.bound->rotation, r.bound->direction, {}, r.bound->rig_direction});
+  }
+  PutNees("nees", r.nees, &object);
+  PutNees("nees_rotation", r.nees_rotation, &object);
+  PutNees("nees_rig_direction", r.nees_rig_direction, &object);
   object["inlier_ratio"] = r.inlier_ratio;
   object["iterations"] = r.iterations;
   if (!r.doubt.empty()) {
@@ -108,9 +118,9 @@ std::string SolverTable(const std::vector<SolverSummary>& summaries) {
       efficiency.AddRow(
           {s.solver, FormatNumber(Efficiency(s.refined_rotation_deg, s.bound_rotation_deg), 3),
            FormatNumber(Efficiency(s.refined_direction_deg, s.bound_direction_deg), 3),
-           FormatNumber(s.nees_ratio, 3), s.nees_ratio ? FormatNumber(s.nees_dof, 2) : "-",
-           s.nees_ratio ? FormatNumber(s.nees_low, 2) + " to " + FormatNumber(s.nees_high, 2)
-                        : "-"});
+           s.nees ? FormatNumber(s.nees->ratio, 3) : "-",
+           s.nees ? FormatNumber(s.nees->dof, 2) : "-",
+           s.nees ? FormatNumber(s.nees->low, 2) + " to " + FormatNumber(s.nees->high, 2) : "-"});
     }
     text += "\n" + efficiency.Format();
   }

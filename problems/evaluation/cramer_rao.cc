@@ -1,71 +1,166 @@
 #include "rigel/problems/evaluation/cramer_rao.h"
 
-#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "rigel/core/alignment.h"
-#include "rigel/core/pixel_unit.h"
+#include "rigel/core/epipolar.h"
+#include "rigel/core/linked_matches.h"
 #include "rigel/core/rig_centre.h"
-#include "rigel/refine/least_squares/epipolar_residuals.h"
+#include "rigel/refine/least_squares/noise_information.h"
 #include "rigel/refine/least_squares/prior_residuals.h"
-#include "rigel/refine/search/inlier_selection.h"
+#include "rigel/refine/least_squares/uncertainty.h"
 
 namespace rigel {
 namespace {
 
-// Pixels: the step of the central differences. Its rounding and its curvature error are both far
-// below the noise.
-constexpr double kStepPx = 1e-2;
+// Of matches, in the perturbation of the rig centre's motion.
+struct MatchInformation {
+  Matrix6d sum = Matrix6d::Zero();
+  Matrix6d noise = Matrix6d::Zero();  // what noise of the pixels adds to `sum` in the mean
+};
 
-using Jacobians = Eigen::Matrix<double, 6, Eigen::Dynamic>;
-
-Jacobians SampsonJacobians(const GroupedMatches& matches, const Pose& pose) {
-  const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
-  const MotionBasis basis = FullBasis(pose, true);
-  std::vector<GroupLinearization> groups;
-  residuals.Linearize(pose, &basis, &groups);
-  Jacobians J(6, residuals.size());
-  for (int k = 0; k < residuals.size(); ++k) {
-    residuals.Evaluate(groups, k, 6, J.col(k).data());
-  }
-  return J;
+// By position in the pair's matches: 1 for true inliers.
+std::vector<char> TrueInliers(const FramePair& pair) {
+  if (!pair.columns.inlier.empty()) return pair.columns.inlier;
+  const GroupedMatches matches(pair.rig, pair.matches);
+  std::vector<double> errors;
+  std::vector<char> grouped;
+  matches.SelectInliers(*pair.truth, kGateSigmas * *pair.noise_px, &errors, &grouped);
+  std::vector<char> inliers(grouped.size());
+  for (int k = 0; k < matches.size(); ++k) inliers[matches.original(k)] = grouped[k];
+  return inliers;
 }
 
-// J'J / sigma^2 at the exact pixels. At the measured pixels the noise n adds sigma^2 times the
-// square of dJ/dn in the mean: 2 to 5 percent of the information with forward motion, where flow is
-// short. This excess is subtracted.
-Matrix6d NoiseFreeInformation(double noise_px, const GroupedMatches& matches,
-                              const std::vector<char>& mask, const Pose& pose) {
-  const double step_px = kStepPx * PixelUnit(matches.rig());
-  const double variance = noise_px * noise_px;
-  const auto square = [&](const Jacobians& J) {
-    Matrix6d sum = Matrix6d::Zero();
-    for (int k = 0; k < J.cols(); ++k) {
-      if (mask[k]) sum.noalias() += J.col(k) * J.col(k).transpose();
-    }
-    return sum;
-  };
-  const Matrix6d information = square(SampsonJacobians(matches, pose)) / variance;
-  Matrix6d excess = Matrix6d::Zero();
-  for (int coordinate = 0; coordinate < 4; ++coordinate) {
-    const auto moved = [&](double step) {
-      std::vector<Match> matches_moved = matches.matches();
-      for (Match& m : matches_moved) {
-        (coordinate < 2 ? m.pixel1 : m.pixel2)(coordinate % 2) += step;
-      }
-      // In the order of the groups already, so that it stays the same.
-      return SampsonJacobians(GroupedMatches(matches.rig(), matches_moved), pose);
-    };
-    excess += square((moved(step_px) - moved(-step_px)) / (2.0 * step_px));
+std::vector<Match> ExactMatches(const FramePair& pair) {
+  std::vector<Match> matches = pair.matches;
+  for (size_t k = 0; k < matches.size(); ++k) {
+    const auto& [u1, v1, u2, v2] = pair.columns.exact[k];
+    matches[k].pixel1 = {u1, v1};
+    matches[k].pixel2 = {u2, v2};
   }
-  // This holds to second order. Where the noise is too large for it, the uncorrected value is
-  // nearer.
-  const Matrix6d corrected = information - excess;
-  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> positive(corrected - 0.5 * information);
-  return positive.info() == Eigen::Success ? corrected : information;
+  return matches;
+}
+
+// Fills the rows of the matches of the mask at `pose`, by their positions in `matches`; takes those
+// at an epipole out of the mask.
+std::vector<SampsonRow> RowsOf(const Rig& rig, const std::vector<Match>& matches, const Pose& pose,
+                               std::vector<char>* mask) {
+  const GroupedMatches grouped(rig, matches);
+  const MotionBasis basis = FullBasis(pose, true);
+  std::vector<GroupLinearization> linear;
+  LinearizeGroups(grouped, ResidualKind::kSampson, pose, &basis, &linear);
+  std::vector<SampsonRow> rows(matches.size());
+  for (size_t g = 0; g < linear.size(); ++g) {
+    const MatchGroup& group = grouped.groups()[g];
+    for (int i = group.begin; i < group.begin + group.size; ++i) {
+      const int k = grouped.original(i);
+      const Match& m = matches[k];
+      if (!(*mask)[k]) continue;
+      (*mask)[k] =
+          DifferentiateSampson(linear[g], CentredPixel(rig.cameras[m.camera1].intrinsics, m.pixel1),
+                               CentredPixel(rig.cameras[m.camera2].intrinsics, m.pixel2), &rows[k])
+              ? 1
+              : 0;
+    }
+  }
+  return rows;
+}
+
+// Adds the matches `set`, which are linked by the pixels they share (as measured), with the inverse
+// of the correlation S of their errors as weight. Where S has no rank, errors follow from others
+// and add nothing: those of a repeated match.
+void AddLinked(const std::vector<Match>& measured, const std::vector<SampsonRow>& rows,
+               const std::vector<int>& set, double variance, MatchInformation* information) {
+  // Of a correlation matrix: far above the rounding of a zero.
+  constexpr double kMinEigenvalue = 1e-6;
+  const auto n = static_cast<int>(set.size());
+  Eigen::MatrixXd S(n, n), J(6, n);
+  for (int i = 0; i < n; ++i) {
+    const SampsonRow& row = rows[set[i]];
+    J.col(i) = row.by_motion;
+    for (int j = 0; j < n; ++j) {
+      const SampsonRow& other = rows[set[j]];
+      const Match &a = measured[set[i]], &b = measured[set[j]];
+      S(i, j) = 0.0;
+      if (SharePixel1(a, b)) S(i, j) += row.gradient.head<2>().dot(other.gradient.head<2>());
+      if (SharePixel2(a, b)) S(i, j) += row.gradient.tail<2>().dot(other.gradient.tail<2>());
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(S);
+  Eigen::VectorXd scale(n);
+  for (int i = 0; i < n; ++i) {
+    const double value = eigen.eigenvalues()(i);
+    scale(i) = value > kMinEigenvalue ? 1.0 / std::sqrt(value) : 0.0;
+  }
+  const Eigen::MatrixXd whiten = eigen.eigenvectors() * scale.asDiagonal();
+  const Eigen::MatrixXd white = J * whiten;
+  information->sum += white * white.transpose() / variance;
+  // Each coordinate of each pixel once: it changes the rows of all matches that have the pixel.
+  for (int coordinate = 0; coordinate < 4; ++coordinate) {
+    const auto share = coordinate < 2 ? SharePixel1 : SharePixel2;
+    for (int i = 0; i < n; ++i) {
+      const auto is_same = [&](int j) { return share(measured[set[i]], measured[set[j]]); };
+      bool seen = false;
+      for (int j = 0; j < i && !seen; ++j) seen = is_same(j);
+      if (seen) continue;
+      Eigen::MatrixXd change = Eigen::MatrixXd::Zero(6, n);
+      for (int j = i; j < n; ++j) {
+        if (is_same(j)) change.col(j) = rows[set[j]].by_motion_and_pixels.col(coordinate);
+      }
+      const Eigen::MatrixXd white_change = change * whiten;
+      information->noise += white_change * white_change.transpose();
+    }
+  }
+}
+
+// Of the true inliers at `truth`, the motion of the rig's centre `centre`. False if too many are
+// linked.
+bool SumInliers(const FramePair& pair, const Eigen::Vector3d& centre, const Pose& truth,
+                MatchInformation* information) {
+  const bool exact = !pair.columns.exact.empty();
+  const double variance = *pair.noise_px * *pair.noise_px;
+  std::vector<char> mask = TrueInliers(pair);
+  const std::vector<SampsonRow> rows =
+      RowsOf(WithOrigin(pair.rig, centre), exact ? ExactMatches(pair) : pair.matches, truth, &mask);
+  for (const std::vector<int>& set : LinkedMatches(pair.matches, mask)) {
+    if (set.size() > static_cast<size_t>(kMaxLinkedMatches)) return false;
+    AddLinked(pair.matches, rows, set, variance, information);
+  }
+  if (exact) information->noise.setZero();
+  return true;
+}
+
+// Of what the pair states about the body's motion, in the perturbation of that.
+Matrix6d StatedInformation(const RefineOptions& options, const FramePair& pair) {
+  MotionPrior stated;
+  if (options.use_prior) {
+    stated = pair.prior;
+  } else {
+    stated.distance = pair.prior.distance;
+    stated.distance_sigma = pair.prior.distance_sigma;
+  }
+  const PriorResiduals prior(stated, options.use_prior ? options.prior_kind : PriorKind::kNone,
+                             *pair.truth);
+  PriorResiduals::Residuals r;
+  PriorResiduals::Jacobian J;
+  prior.Evaluate(*pair.truth, &r, &J);
+  return J.transpose() * J;
+}
+
+// True if `noise` is a small share of `information` in each direction of the basis.
+bool IsSmall(const Matrix6d& noise, const Matrix6d& information, const MotionBasis& basis) {
+  constexpr double kMaxShare = 0.25;  // the square of it, which is left out, is a sixteenth
+  const Eigen::MatrixXd whole = basis.transpose() * information * basis;
+  const Eigen::MatrixXd rest =
+      kMaxShare * whole - Eigen::MatrixXd(basis.transpose() * noise * basis);
+  const Eigen::VectorXd scale = whole.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> positive(scale.asDiagonal() * rest * scale.asDiagonal());
+  return positive.info() == Eigen::Success;
 }
 
 }  // namespace
@@ -76,58 +171,44 @@ std::optional<CramerRaoBound> ComputeCramerRaoBound(const RefineOptions& options
   if (!pair.truth.has_value() || !pair.noise_px.has_value() || !pair.IsValid(&error)) {
     return std::nullopt;
   }
-  // Of the motion that the refinement fits, and then of the body's.
-  const Eigen::Vector3d point = FittedPoint(options, pair.prior, pair.rig);
-  const Pose truth = MotionOfPoint(*pair.truth, point);
-  const GroupedMatches matches(WithOrigin(pair.rig, point), pair.matches);
-  std::vector<double> errors;
-  std::vector<char> mask;
-  // The gate of the refinement: an outlier that fits the truth by chance gives no information.
-  const double gate =
-      std::max(ThresholdPx(options.threshold_px, pair.rig), kGateSigmas * *pair.noise_px);
   const bool prior_exact =
       options.form == RefineForm::kPrior || options.form == RefineForm::kPriorDepths;
   Alignment alignment;
   if (prior_exact && !MakeAlignment(pair.prior, options.prior_kind, &alignment, &error)) {
     return std::nullopt;
   }
-  const auto set_covariance = [&](Matrix6d information, CramerRaoBound* bound) {
-    if (options.use_prior) {
-      const PriorResiduals prior(pair.prior, options.prior_kind, truth);
-      PriorResiduals::Residuals r;
-      PriorResiduals::Jacobian J;
-      prior.Evaluate(truth, &r, &J);
-      information += J.transpose() * J;
-    }
-    bound->relative_scale = RelativeScaleSigma(information, truth);
-    const bool scale_free =
-        options.scale == ScaleMode::kFree ||
-        (options.scale == ScaleMode::kAuto && bound->relative_scale <= kScaleObservableRatio);
-    const MotionBasis basis =
-        prior_exact ? PriorBasis(truth, alignment, scale_free) : FullBasis(truth, scale_free);
-    return CovarianceOfBasis(information, basis, &bound->covariance);
+  const auto free_directions = [&](const Pose& pose, bool length_free) {
+    return prior_exact ? PriorBasis(pose, alignment, length_free) : FullBasis(pose, length_free);
   };
 
-  const auto fit_at_truth = [&](InlierFit* fit) {
-    fit->noise_px = *pair.noise_px;
-    fit->is_minimum = false;
-    matches.SelectInliers(truth, gate, &errors, &fit->members);
-    EpipoleWeights(matches, truth, fit->noise_px, &fit->weights);
-    std::vector<double> weights = fit->weights;
-    for (size_t k = 0; k < weights.size(); ++k) weights[k] *= fit->members[k];
-    const double variance = fit->noise_px * fit->noise_px;
-    CramerRaoBound all;
-    if (!set_covariance(SampsonInformation(matches, weights, truth) / variance, &all)) return false;
-    fit->covariance = all.covariance;
-    return true;
-  };
-  SelectPlausibleInliers(matches, truth, gate, fit_at_truth, &errors, &mask);
-  CramerRaoBound bound;
-  if (!set_covariance(NoiseFreeInformation(*pair.noise_px, matches, mask, truth), &bound)) {
-    return std::nullopt;
+  const Eigen::Vector3d centre = RigCentre(pair.rig);
+  const Pose truth = MotionOfPoint(*pair.truth, centre);
+  const Matrix6d to_body = BodyFromPointJacobian(truth.R, centre);
+  MatchInformation of_matches;
+  if (!SumInliers(pair, centre, truth, &of_matches)) return std::nullopt;
+  Matrix6d information =
+      of_matches.sum + to_body.transpose() * StatedInformation(options, pair) * to_body;
+  const Matrix6d without_length = information - of_matches.noise;
+  MotionBasis basis;
+  if (options.scale == ScaleMode::kFixed) {
+    // |t| is that of the body.
+    basis = BodyFromPointJacobian(truth.R, -centre) * free_directions(*pair.truth, false);
+  } else {
+    basis = free_directions(truth, true);
+    const double length = truth.t.norm();
+    if (length > 0) {
+      const Eigen::Vector3d log_length = truth.t / (length * length * kWeakLogLengthSigma);
+      information.block<3, 3>(3, 3) += log_length * log_length.transpose();
+    }
   }
-  const Matrix6d to_body = BodyFromPointJacobian(truth.R, point);
-  bound.covariance = to_body * bound.covariance * to_body.transpose();
+  if (!IsSmall(of_matches.noise, information, basis)) return std::nullopt;
+  Matrix6d covariance;
+  if (!CovarianceOfBasis(information - of_matches.noise, basis, &covariance)) return std::nullopt;
+
+  CramerRaoBound bound;
+  bound.relative_scale = RelativeScaleSigma(without_length, truth);
+  bound.rig_direction = DirectionSigma(covariance, truth.t);
+  bound.covariance = to_body * covariance * to_body.transpose();
   bound.rotation = RotationSigma(bound.covariance);
   bound.direction = DirectionSigma(bound.covariance, pair.truth->t);
   return bound;

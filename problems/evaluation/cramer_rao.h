@@ -11,20 +11,40 @@
 namespace rigel {
 
 struct CramerRaoBound {
-  double rotation = 0.0;        // sqrt(trace) of the rotation's 3x3 block, radians
-  double direction = 0.0;       // of the translation's block projected off t, over |t|, radians
-  double relative_scale = 0.0;  // of |b| (rig_centre.h), all else free; infinite if not determined
+  double rotation = 0.0;       // sqrt(trace) of the rotation's 3x3 block, radians
+  double direction = 0.0;      // of the translation's block projected off t, over |t|, radians
+  double rig_direction = 0.0;  // the same of b, the motion of the rig's centre (rig_centre.h)
+  // Of |b|, all else free, without the weak length; infinite if not determined.
+  double relative_scale = 0.0;
   Matrix6d covariance;
 };
 static_assert(kSameLayoutEverywhere<CramerRaoBound>, "no member of CramerRaoBound may be aligned");
 
-// sigma^2 (J'J)^-1 at the true motion over the parameters that `options.form` frees (for kFull, b
-// of FittedPoint() on the sphere where scale is not observable), J of the Sampson residuals of the
-// inliers there (SelectPlausibleInliers with the gate of the refinement), sigma the pair's
-// noise_px. options.use_prior adds the prior's information. Nothing if the pair lacks truth or
-// noise_px, or the information is singular.
+// Without knowing it, log |b| is normal about the true one with this standard deviation: the weak
+// length, which keeps |b| finite where the matches do not determine it.
+inline constexpr double kWeakLogLengthSigma = 1.0;
+
+// The inverse of the information of the true inliers at the true motion, over all six parameters
+// (what is known exactly left out: the prior with kPrior and kPriorDepths, |t| with
+// ScaleMode::kFixed).
+//
+// Information: J'J / sigma^2, J of the Sampson errors, sigma the pair's noise_px; matches that
+// share a pixel are weighted by the inverse of the covariance of their errors, so that a match that
+// is repeated counts once. To it come the weak length, the distance of the pair's prior if it has a
+// sigma, and, with options.use_prior, the rest of the prior.
+//
+// The inliers are those of columns.inlier; else the matches with an error below kGateSigmas sigma
+// that are in front of their cameras. J is that of columns.exact; else what the noise of the
+// measured pixels adds is subtracted (noise_information.h).
+//
+// Nothing if the pair lacks truth or noise_px, the information is singular, more than a quarter of
+// it in any direction is subtracted (this holds to second order only), or more than
+// kMaxLinkedMatches are linked by the pixels they share.
 std::optional<CramerRaoBound> ComputeCramerRaoBound(const RefineOptions& options,
                                                     const FramePair& pair);
+
+// The time grows with the third power.
+inline constexpr int kMaxLinkedMatches = 300;
 
 }  // namespace rigel
 

@@ -46,7 +46,17 @@ MotionErrors Errors(const Json& json) {
     errors.direction = ExactRadians(json.at("translation_dir_deg").get<double>());
   }
   if (json.contains("scale")) errors.scale = json.at("scale").get<double>();
+  if (json.contains("rig_direction_deg")) {
+    errors.rig_direction = ExactRadians(json.at("rig_direction_deg").get<double>());
+  }
   return errors;
+}
+
+std::optional<NormalizedError> Nees(const Json& result, const char* key) {
+  if (!result.contains(key)) return std::nullopt;
+  const Json& nees = result.at(key);
+  return NormalizedError{nees.at("value").get<double>(),
+                         JsonInteger(nees.at("degrees_of_freedom"), 1)};
 }
 
 EstimateStatus Status(const std::string& name) {
@@ -64,12 +74,11 @@ PairResult Result(const Json& json) {
   if (json.contains("refined")) result.refined = Errors(json.at("refined"));
   if (json.contains("bound")) {
     const MotionErrors bound = Errors(json.at("bound"));
-    result.bound = MotionBound{bound.rotation, bound.direction};
+    result.bound = MotionBound{bound.rotation, bound.direction, bound.rig_direction};
   }
-  if (json.contains("nees")) {
-    result.nees = json.at("nees").at("value").get<double>();
-    result.nees_dof = JsonInteger(json.at("nees").at("degrees_of_freedom"), 1);
-  }
+  result.nees = Nees(json, "nees");
+  result.nees_rotation = Nees(json, "nees_rotation");
+  result.nees_rig_direction = Nees(json, "nees_rig_direction");
   result.inlier_ratio = json.at("inlier_ratio").get<double>();
   result.iterations = JsonInteger(json.at("iterations"), 0);
   if (json.contains("reason")) result.doubt = json.at("reason").get<std::string>();

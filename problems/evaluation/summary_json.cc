@@ -20,6 +20,21 @@ void PutGroup(const char* key, const Json& group, Json* object) {
   if (!group.empty()) (*object)[key] = group;
 }
 
+void PutNees(const char* key, const std::optional<NeesStatistics>& nees, Json* entry) {
+  if (!nees) return;
+  (*entry)[key] = {{"ratio", nees->ratio},
+                   {"degrees_of_freedom", nees->dof},
+                   {"low", nees->low},
+                   {"high", nees->high}};
+}
+
+std::optional<NeesStatistics> GetNees(const Json& entry, const char* key) {
+  if (!entry.contains(key)) return std::nullopt;
+  const Json& nees = entry.at(key);
+  return NeesStatistics{nees.at("ratio").get<double>(), nees.at("degrees_of_freedom").get<double>(),
+                        nees.at("low").get<double>(), nees.at("high").get<double>()};
+}
+
 std::optional<Statistics> Get(const Json& object, const char* key) {
   if (!object.contains(key)) return std::nullopt;
   const Json& s = object.at(key);
@@ -55,16 +70,15 @@ nlohmann::ordered_json SummaryJson(const SolverSummary& s) {
   Put("rotation_deg", s.refined_rotation_deg, &refined);
   Put("translation_dir_deg", s.refined_direction_deg, &refined);
   Put("scale", s.refined_scale, &refined);
+  Put("rig_direction_deg", s.refined_rig_direction_deg, &refined);
   PutGroup("refined", refined, &entry);
   Put("rotation_deg", s.bound_rotation_deg, &bound);
   Put("translation_dir_deg", s.bound_direction_deg, &bound);
+  Put("rig_direction_deg", s.bound_rig_direction_deg, &bound);
   PutGroup("bound", bound, &entry);
-  if (s.nees_ratio) {
-    entry["nees"] = {{"ratio", *s.nees_ratio},
-                     {"degrees_of_freedom", s.nees_dof},
-                     {"low", s.nees_low},
-                     {"high", s.nees_high}};
-  }
+  PutNees("nees", s.nees, &entry);
+  PutNees("nees_rotation", s.nees_rotation, &entry);
+  PutNees("nees_rig_direction", s.nees_rig_direction, &entry);
   Put("inlier_ratio", s.inlier_ratio, &entry);
   Put("iterations", s.iterations, &entry);
   Put("ransac", s.ransac_ms, &time);
@@ -94,16 +108,14 @@ SolverSummary ParseSummary(const Json& json) {
   s.refined_rotation_deg = Get(refined, "rotation_deg");
   s.refined_direction_deg = Get(refined, "translation_dir_deg");
   s.refined_scale = Get(refined, "scale");
+  s.refined_rig_direction_deg = Get(refined, "rig_direction_deg");
   const Json& bound = group("bound");
   s.bound_rotation_deg = Get(bound, "rotation_deg");
   s.bound_direction_deg = Get(bound, "translation_dir_deg");
-  if (json.contains("nees")) {
-    const Json& nees = json.at("nees");
-    s.nees_ratio = nees.at("ratio").get<double>();
-    s.nees_dof = nees.at("degrees_of_freedom").get<double>();
-    s.nees_low = nees.at("low").get<double>();
-    s.nees_high = nees.at("high").get<double>();
-  }
+  s.bound_rig_direction_deg = Get(bound, "rig_direction_deg");
+  s.nees = GetNees(json, "nees");
+  s.nees_rotation = GetNees(json, "nees_rotation");
+  s.nees_rig_direction = GetNees(json, "nees_rig_direction");
   s.inlier_ratio = Get(json, "inlier_ratio");
   s.iterations = Get(json, "iterations");
   const Json& time = group("time_ms");

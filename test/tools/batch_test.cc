@@ -94,7 +94,8 @@ TEST_F(ShardsTest, StandingStillHasFiniteNumbersInEveryReport) {
   const Json report = ParseReport(run.out);
   EXPECT_EQ(report["results"][0]["failures"], 0);
   EXPECT_EQ(report["results"][0]["direction_pairs"], 0);
-  EXPECT_FALSE(report["results"][0]["bound"].contains("translation_dir_deg"));
+  const Json bound = report["results"][0].value("bound", Json::object());
+  EXPECT_FALSE(bound.contains("translation_dir_deg") || bound.contains("rig_direction_deg"));
   ExpectSame(args, 2);
 }
 
@@ -132,9 +133,9 @@ TEST_F(ShardsTest, ShardKeepsThePairsAndSaysWhichItIs) {
   ASSERT_THAT(report["pair_results"], SizeIs(3));
   EXPECT_EQ(report["pair_results"][0]["pair"], matches + "/000002.matches");
   EXPECT_THAT(Keys(report["pair_results"][0]["solvers"]), ElementsAre("17pt-li", "4pt"));
-  EXPECT_THAT(
-      Keys(report["pair_results"][0]["solvers"]["4pt"]),
-      ElementsAre("bound", "inlier_ratio", "iterations", "nees", "raw", "refined", "status"));
+  EXPECT_THAT(Keys(report["pair_results"][0]["solvers"]["4pt"]),
+              ElementsAre("bound", "inlier_ratio", "iterations", "nees", "nees_rig_direction",
+                          "nees_rotation", "raw", "refined", "status"));
 }
 
 TEST_F(ShardsTest, UnreadableFilesAreLeftOutAndFailTheirShardAlone) {

@@ -81,10 +81,12 @@ TEST_F(CompareTest, JsonHasTheStructureOfTheFormat) {
     if (failures == 6) continue;  // a baseline that does not fit this motion
     EXPECT_THAT(Keys(entry), UnorderedElementsAre("solver", "sequence", "pairs", "failures",
                                                   "direction_pairs", "raw", "refined", "bound",
-                                                  "nees", "inlier_ratio", "iterations", "time_ms"));
+                                                  "nees", "nees_rotation", "nees_rig_direction",
+                                                  "inlier_ratio", "iterations", "time_ms"));
     ExpectStatistics(entry["raw"], {"rotation_deg", "translation_dir_deg", "scale"});
-    ExpectStatistics(entry["refined"], {"rotation_deg", "translation_dir_deg", "scale"});
-    ExpectStatistics(entry["bound"], {"rotation_deg", "translation_dir_deg"});
+    ExpectStatistics(entry["refined"],
+                     {"rotation_deg", "translation_dir_deg", "scale", "rig_direction_deg"});
+    ExpectStatistics(entry["bound"], {"rotation_deg", "translation_dir_deg", "rig_direction_deg"});
     ExpectStatistics(entry["time_ms"], {"ransac", "refine"});
     ExpectStatistics({{"inlier_ratio", entry["inlier_ratio"]}, {"iterations", entry["iterations"]}},
                      {"inlier_ratio", "iterations"});
@@ -101,14 +103,15 @@ TEST_F(CompareTest, JsonHasTheStructureOfTheFormat) {
 
 TEST_F(CompareTest, OwnSolversReachTheBound) {
   const std::string matches =
-      Simulate("in", {"--pairs=20", "--inter_share=0.5", "--outlier_share=0.2", "--motion=planar"});
+      Simulate("in", {"--pairs=20", "--inter_share=0.5", "--outlier_share=0.2", "--motion=planar",
+                      "--noise_px=0.1"});
   const Json report =
       Compare({"--matches=" + matches,
                "--solvers=4pt-approx,4pt-axis-approx-polished,4pt,4pt-axis,3pt-approx,3pt"});
   ASSERT_EQ(report["results"].size(), 6u);
   for (const Json& entry : report["results"]) {
     EXPECT_EQ(entry["failures"], 0) << entry["solver"];
-    for (const char* quantity : {"rotation_deg", "translation_dir_deg"}) {
+    for (const char* quantity : {"rotation_deg", "translation_dir_deg", "rig_direction_deg"}) {
       EXPECT_LT(entry["refined"][quantity]["rms"],
                 1.5 * entry["bound"][quantity]["rms"].get<double>())
           << entry["solver"] << " " << quantity;

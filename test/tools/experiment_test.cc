@@ -249,7 +249,7 @@ TEST_F(ExperimentTest, KittiMotionsHasARowADrive) {
     drives.insert(row["sequence"].get<std::string>());
     EXPECT_EQ(row["pairs"], 3) << "motions 0, 4 and 8 of nine";
     EXPECT_FALSE(row.contains("x"));
-    EXPECT_TRUE(row.contains("bound"));
+    EXPECT_TRUE(row.contains("refined"));
     EXPECT_TRUE(row.contains("time_ms"));
   }
   EXPECT_THAT(drives, testing::ElementsAre("03", "04"));

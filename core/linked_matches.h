@@ -1,0 +1,24 @@
+// Matches whose errors are not independent: they have a key point in common.
+#ifndef RIGEL_CORE_LINKED_MATCHES_H_
+#define RIGEL_CORE_LINKED_MATCHES_H_
+
+#include <vector>
+
+#include "rigel/core/match.h"
+
+namespace rigel {
+
+// True if `a` and `b` are of one key point at time 1, or at time 2: the same pixel of the same
+// camera, to the last bit.
+bool SharePixel1(const Match& a, const Match& b);
+bool SharePixel2(const Match& a, const Match& b);
+
+// The positions of the matches with mask[k] != 0 in sets: two matches that share a pixel are in one
+// set, so matches of different sets share none. Most sets have one match. Sets are in the order of
+// their first match, and so are the matches in each.
+std::vector<std::vector<int>> LinkedMatches(const std::vector<Match>& matches,
+                                            const std::vector<char>& mask);
+
+}  // namespace rigel
+
+#endif  // RIGEL_CORE_LINKED_MATCHES_H_
