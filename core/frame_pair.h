@@ -23,8 +23,8 @@ struct FramePair {
   MotionPrior prior;
   std::optional<double> time1, time2;  // seconds
   std::optional<Pose> truth;           // f2_from_f1
-  // 1-sigma image noise if it is known. The programs use it. EstimateMotion() does not read it: set
-  // options.refine.noise_px = pair.noise_px.
+  // 1-sigma image noise if it is known. EstimateMotion() does not read it: bounds on its
+  // errors do.
   std::optional<double> noise_px;
 
   // False with a message if the rig, the prior or a column is invalid or a match names a camera

@@ -13,7 +13,7 @@ namespace rigel {
 
 // Each part is optional. Directions are unit vectors. A sigma is the standard deviation per axis,
 // radians. A prior without a sigma makes hypotheses; RefineSettings::use_prior cannot weight it and
-// leaves it out. The forms kPrior and kPriorDepths take the prior as exact, and ScaleMode::kFixed
+// leaves it out. The forms kPrior and kPriorDepths take the prior as exact, and hold_distance
 // the distance, with or without a sigma.
 struct MotionPrior {
   // "Down" in the body frame at time 1 and 2 (from an IMU): g2 = R g1.

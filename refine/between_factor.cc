@@ -52,6 +52,16 @@ BetweenFactor ToG2o(const Pose& f2_from_f1, const Matrix6d& covariance,
                  information);
 }
 
+// The marginal information without the translation along `t`: exactly zero in that direction.
+Matrix6d InformationWithout(const Eigen::Vector3d& t, const Matrix6d& covariance) {
+  const double norm = t.norm();
+  if (!(norm > 0)) return PseudoInformation(covariance);
+  Eigen::Matrix<double, 6, 1> along = Eigen::Matrix<double, 6, 1>::Zero();
+  along.tail<3>() = t / norm;
+  const Matrix6d others = Matrix6d::Identity() - along * along.transpose();
+  return Symmetric(others * PseudoInformation(others * covariance * others) * others);
+}
+
 }  // namespace
 
 Matrix6d GtsamJacobian(const Pose& f2_from_f1) {
@@ -100,19 +110,15 @@ Matrix6d InformationMatrix(const RefineSummary& summary, const Pose& f2_from_f1)
     covariance.rightCols<3>().setZero();
     return PseudoInformation(covariance);
   }
-  // Of the motion that was fitted, whose rank and null direction are known.
-  const Eigen::Vector3d& point = summary.fitted_point;
+  if (summary.length_held) return InformationWithout(f2_from_f1.t, *summary.covariance);
+  // Of the rig's own motion: where nothing says its length, that has no information.
+  const Eigen::Vector3d& point = summary.rig_center;
   const Matrix6d from_body = BodyFromPointJacobian(f2_from_f1.R, -point);
-  Matrix6d information = PseudoInformation(from_body * *summary.covariance * from_body.transpose());
-  const Eigen::Vector3d b = MotionOfPoint(f2_from_f1, point).t;
-  const double norm = b.norm();
-  if (!summary.scale_free && norm > 0) {
-    // Remove rounding along the direction that has no information.
-    Eigen::Matrix<double, 6, 1> held = Eigen::Matrix<double, 6, 1>::Zero();
-    held.tail<3>() = b / norm;
-    const Matrix6d free = Matrix6d::Identity() - held * held.transpose();
-    information = Symmetric(free * information * free);
-  }
+  const Matrix6d of_rig = summary.rig_covariance.value_or(
+      Matrix6d(from_body * *summary.covariance * from_body.transpose()));
+  const Matrix6d information = summary.length_sigma <= kMaxLengthSigma
+                                   ? PseudoInformation(of_rig)
+                                   : InformationWithout(MotionOfPoint(f2_from_f1, point).t, of_rig);
   return Symmetric(from_body.transpose() * information * from_body);
 }
 
@@ -135,10 +141,11 @@ BetweenFactor G2oEdge(const Pose& f2_from_f1, const RefineSummary& summary) {
 }
 
 void SetUndeterminedLength(double length, Pose* f2_from_f1, RefineSummary* summary) {
-  const Eigen::Vector3d& point = summary->fitted_point;
+  const Eigen::Vector3d& point = summary->rig_center;
   const double before = MotionOfPoint(*f2_from_f1, point).t.norm();
   if (!(before > 0)) return;
   *f2_from_f1 = WithBodyLength(*f2_from_f1, point, length);
+  summary->rig_covariance.reset();
   if (!summary->covariance) return;
   const double ratio = MotionOfPoint(*f2_from_f1, point).t.norm() / before;
   Matrix6d scale = Matrix6d::Identity();

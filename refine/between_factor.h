@@ -19,9 +19,10 @@
 //
 // If the motion is not fully determined, the information of the missing part is exactly zero. In
 // Rigel's convention:
-//   - If a length was held, there is no information along b, the motion of the rig's centre
-//     (rig_centre.h), or along t if |t| was held. The other five directions have their information
-//     given that length.
+//   - If |t| was held, there is no information along t. If neither the matches nor a distance say
+//   the
+//     length of b, the motion of the rig's centre (rig_centre.h), there is none along b. The other
+//     five directions have their marginal information.
 //   - If the direction of b is not observable, the translation has none, and the rotation has its
 //     marginal information.
 //   - If the rotation is not observable, or there is no covariance, the information is zero.
@@ -35,6 +36,9 @@
 #include "rigel/refine/refine.h"
 
 namespace rigel {
+
+// The length of b is not known if its relative standard deviation exceeds this.
+inline constexpr double kMaxLengthSigma = 0.5;
 
 struct BetweenFactor {
   Pose measurement;  // f1_from_f2

@@ -18,6 +18,7 @@
 #include "rigel/minimal/solvers/two_point_ackermann.h"
 #include "rigel/refine/search/chance.h"
 #include "rigel/refine/search/motion_search.h"
+#include "rigel/refine/search/shared_pixels.h"
 #include "rigel/refine/solver_choice.h"
 
 namespace rigel {
@@ -35,13 +36,6 @@ constexpr EnumName<EstimateStatus> kStatusNames[] = {
 double MillisecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
       .count();
-}
-
-MotionEstimate Refused(EstimateStatus status, const std::string& message) {
-  MotionEstimate estimate;
-  estimate.status = status;
-  estimate.message = message;
-  return estimate;
 }
 
 // The prior, with the rig's forward direction if it states none. Ackermann motion needs it.
@@ -75,143 +69,255 @@ bool EstimateOptions::IsValid(std::string* error) const {
          IsValidTimeLimit(time_limit, error);
 }
 
-MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& pair) {
-  Stop stop(options.time_limit, options.cancel);
-  std::string error;
-  if (!options.IsValid(&error) || !pair.IsValid(&error)) {
-    return Refused(EstimateStatus::kInvalidInput, error);
-  }
-  RansacOptions ransac_options = options.ransac;
-  ransac_options.threshold_px = ThresholdPx(options.ransac.threshold_px, pair.rig);
-  const double distance = pair.prior.distance.value_or(0.0);
-  if (options.refine_motion && options.refine.scale == ScaleMode::kFixed &&
-      !(distance > 0 && std::isfinite(distance))) {
-    return Refused(EstimateStatus::kInvalidInput,
-                   "|t| is to be held, and the prior states no positive distance");
-  }
-  const bool choose = options.solver == kAutoSolver;
-  const bool exact_prior =
-      options.refine_motion && (options.refine.form == RefineForm::kPrior ||
-                                options.refine.form == RefineForm::kPriorDepths);
-  std::vector<const SolverInfo*> solvers = {FindSolver(options.solver)};
-  if (choose) {
-    solvers = SuggestSolvers(pair.prior);
-    if (exact_prior) solvers.resize(1);
-    if (exact_prior && solvers[0]->prior == PriorKind::kNone) {
-      return Refused(EstimateStatus::kInvalidInput,
-                     std::string("auto: there is no prior for the refinement '") +
-                         RefineFormName(options.refine.form) + "' to hold");
+namespace {
+
+// One estimate, stage by stage.
+class Estimator {
+ public:
+  Estimator(const EstimateOptions& options, const FramePair& pair)
+      : options_(options), pair_(pair), stop_(options.time_limit, options.cancel) {}
+
+  MotionEstimate Run() {
+    if (!Check()) return estimate_;
+    GroupMatches();
+    Search();
+    if (!TakeMotion()) return estimate_;
+    if (options_.refine_motion) {
+      Refine();
+      if (SearchAgain()) {
+        Search();
+        if (TakeMotion()) Refine();
+      }
     }
-  }
-  const MotionPrior prior = WithForward(pair);
-  for (const SolverInfo* solver : solvers) {
-    Alignment alignment;
-    if (!MakeAlignment(prior, solver->prior, &alignment, &error)) {
-      return Refused(EstimateStatus::kInvalidInput, options.solver + ": " + error);
-    }
+    Judge();
+    return estimate_;
   }
 
-  const auto ransac_start = std::chrono::steady_clock::now();
-  // The search is for the motion of the rig's centre; the body's motion is computed from it at the
-  // end. The Ackermann model describes the motion of the body's origin.
-  const bool ackermann = solvers[0]->solve == &Solve2ptAckermann;
-  const Eigen::Vector3d centre =
-      ackermann ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : RigCentre(pair.rig);
-  const GroupedMatches matches(WithOrigin(pair.rig, centre), pair.matches);
-  MotionSearch search = SearchMotion(solvers, prior, matches, ransac_options, &stop);
+ private:
+  bool Refuse(EstimateStatus status, const std::string& message);
+  bool Check();
+  bool ChooseSolvers();
+  void GroupMatches();
+  void Search();
+  bool TakeMotion();
+  void Refine();
+  bool SearchAgain();
+  void Judge();
+  void CheckRig(const Doubt& doubt);
+  bool ExceedsChanceUnrefined() const;
+  bool Refined() const { return estimate_.refine.IsSolutionUsable(); }
+  bool HoldsPrior() const {
+    return options_.refine_motion && (options_.refine.form == RefineForm::kPrior ||
+                                      options_.refine.form == RefineForm::kPriorDepths);
+  }
+
+  const EstimateOptions& options_;
+  const FramePair& pair_;
+  Stop stop_;
+  std::vector<const SolverInfo*> solvers_;
+  MotionPrior prior_;
+  RansacOptions ransac_;
+  std::vector<int> first_of_;  // shared_pixels.h
+  std::vector<Match> distinct_;
+  std::vector<int> distinct_row_of_;  // by position in pair_.matches; -1: none
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
+  GroupedMatches matches_;
+  MotionSearch search_;
+  MotionEstimate estimate_;
+};
+
+bool Estimator::Refuse(EstimateStatus status, const std::string& message) {
+  estimate_.status = status;
+  estimate_.message = message;
+  return false;
+}
+
+bool Estimator::Check() {
+  std::string error;
+  if (!options_.IsValid(&error) || !pair_.IsValid(&error)) {
+    return Refuse(EstimateStatus::kInvalidInput, error);
+  }
+  const double distance = pair_.prior.distance.value_or(0.0);
+  if (options_.refine_motion && options_.refine.hold_distance && !(distance > 0)) {
+    return Refuse(EstimateStatus::kInvalidInput,
+                  "|t| is to be held, and the prior states no positive distance");
+  }
+  ransac_ = options_.ransac;
+  ransac_.threshold_px = ThresholdPx(options_.ransac.threshold_px, pair_.rig);
+  return ChooseSolvers();
+}
+
+bool Estimator::ChooseSolvers() {
+  solvers_ = {FindSolver(options_.solver)};
+  if (options_.solver == kAutoSolver) {
+    solvers_ = SuggestSolvers(pair_.prior);
+    if (HoldsPrior()) solvers_.resize(1);
+    if (HoldsPrior() && solvers_[0]->prior == PriorKind::kNone) {
+      return Refuse(EstimateStatus::kInvalidInput,
+                    std::string("auto: there is no prior for the refinement '") +
+                        RefineFormName(options_.refine.form) + "' to hold");
+    }
+  }
+  prior_ = WithForward(pair_);
+  for (const SolverInfo* solver : solvers_) {
+    Alignment alignment;
+    std::string error;
+    if (!MakeAlignment(prior_, solver->prior, &alignment, &error)) {
+      return Refuse(EstimateStatus::kInvalidInput, options_.solver + ": " + error);
+    }
+  }
+  return true;
+}
+
+// The search is for the motion of the rig's centre; the body's motion is computed from it at the
+// end. The Ackermann model describes the motion of the body's origin.
+void Estimator::GroupMatches() {
+  const auto start = std::chrono::steady_clock::now();
+  if (solvers_[0]->solve != &Solve2ptAckermann) centre_ = RigCentre(pair_.rig);
+  const std::vector<size_t> rows = DistinctMatches(pair_.matches, &first_of_);
+  distinct_row_of_.assign(pair_.matches.size(), -1);
+  distinct_.reserve(rows.size());
+  for (const size_t row : rows) {
+    distinct_row_of_[row] = static_cast<int>(distinct_.size());
+    distinct_.push_back(pair_.matches[row]);
+  }
+  matches_ = GroupedMatches(WithOrigin(pair_.rig, centre_), distinct_);
+  estimate_.ransac_ms = MillisecondsSince(start);
+}
+
+void Estimator::Search() {
+  const auto start = std::chrono::steady_clock::now();
+  search_ = SearchMotion(solvers_, prior_, matches_, ransac_, &stop_);
   // RANSAC counted the inliers among the matches that it scored; this counts them among all.
-  if (search.best.found && matches.size() > ransac_options.max_scored) {
-    matches.ScoreInFront(search.best.best, ransac_options.threshold_px,
-                         std::numeric_limits<double>::infinity(), &search.best.num_inliers);
+  if (search_.best.found && matches_.size() > ransac_.max_scored) {
+    matches_.ScoreInFront(search_.best.best, ransac_.threshold_px,
+                          std::numeric_limits<double>::infinity(), &search_.best.num_inliers);
   }
-  MotionEstimate estimate;
-  estimate.iterations = search.iterations;
-  estimate.hypotheses = search.hypotheses;
-  estimate.trials = std::move(search.trials);
-  estimate.ransac_ms = MillisecondsSince(ransac_start);
-  estimate.stopped = stop.reason();
-  if (search.solver == nullptr) {
-    estimate.status = matches.size() < solvers[0]->sample_size ? EstimateStatus::kTooFewMatches
-                                                               : EstimateStatus::kNoSolution;
-    estimate.message = estimate.trials[0].note;
-    return estimate;
+  estimate_.ransac_ms += MillisecondsSince(start);
+}
+
+// Takes over the result of the search. False if there is no motion.
+bool Estimator::TakeMotion() {
+  estimate_.iterations += search_.iterations;
+  estimate_.hypotheses += search_.hypotheses;
+  estimate_.trials = std::move(search_.trials);
+  estimate_.stopped = stop_.reason();
+  if (search_.solver == nullptr) {
+    return Refuse(matches_.size() < solvers_[0]->sample_size ? EstimateStatus::kTooFewMatches
+                                                             : EstimateStatus::kNoSolution,
+                  estimate_.trials[0].note);
   }
-  estimate.solver = search.solver->name;
-  const RansacResult<Solution>& ransac = search.best;
+  estimate_.solver = search_.solver->name;
+  const RansacResult<Solution>& ransac = search_.best;
   if (!ransac.found) {
-    estimate.status = EstimateStatus::kNoSolution;
-    estimate.message = estimate.stopped != StopReason::kNone
-                           ? stop.Message() + " before a motion was found"
-                           : "no sample of the matches determines a motion";
-    return estimate;
+    return Refuse(EstimateStatus::kNoSolution,
+                  estimate_.stopped != StopReason::kNone
+                      ? stop_.Message() + " before a motion was found"
+                      : "no sample of the matches determines a motion");
   }
-  estimate.raw = ransac.best_minimal;
-  estimate.raw.t = MotionOfBody(ransac.best_minimal, centre).t;
-  estimate.pose = MotionOfBody(ransac.best, centre);
-  estimate.num_inliers = ransac.num_inliers;
-  estimate.status = EstimateStatus::kSuccess;
-  estimate.message = estimate.stopped != StopReason::kNone ? stop.Message() : "ok";
-  if (options.refine_motion) {
-    const auto refine_start = std::chrono::steady_clock::now();
-    RefineOptions refine(options.refine);
-    refine.prior_kind = search.solver->prior;
-    refine.threshold_px = ransac_options.threshold_px;
-    refine.num_tries = static_cast<double>(search.hypotheses);
-    const std::optional<double> left = stop.SecondsLeft();
-    if (left) refine.time_limit = std::min(*left, refine.time_limit.value_or(*left));
-    if (refine.cancel == nullptr) refine.cancel = options.cancel;
-    estimate.refine = RefineAbout(refine, matches, centre, pair.prior, &estimate.pose);
-    estimate.refine_ms = MillisecondsSince(refine_start);
-    if (estimate.refine.IsSolutionUsable()) {
-      estimate.num_inliers = estimate.refine.num_inliers;
-      if (estimate.refine.stopped != StopReason::kNone) {
-        estimate.stopped = estimate.refine.stopped;
-        // Refine() was given only the rest of the limit; the message names the whole.
-        if (stop.Asked()) estimate.refine.message = stop.Message();
-        estimate.message = estimate.refine.message;
-      }
-    } else {
-      estimate.status = EstimateStatus::kNotRefined;
-      estimate.message = "not refined: " + estimate.refine.message;
+  estimate_.raw = ransac.best_minimal;
+  estimate_.raw.t = MotionOfBody(ransac.best_minimal, centre_).t;
+  estimate_.pose = MotionOfBody(ransac.best, centre_);
+  estimate_.num_inliers = ransac.num_inliers;
+  estimate_.status = EstimateStatus::kSuccess;
+  estimate_.message = estimate_.stopped != StopReason::kNone ? stop_.Message() : "ok";
+  return true;
+}
+
+void Estimator::Refine() {
+  const auto start = std::chrono::steady_clock::now();
+  RefineOptions refine(options_.refine);
+  refine.prior_kind = search_.solver->prior;
+  refine.threshold_px = options_.ransac.threshold_px;
+  refine.num_tries = std::max(1.0, static_cast<double>(estimate_.hypotheses));
+  const std::optional<double> left = stop_.SecondsLeft();
+  if (left) refine.time_limit = std::min(*left, refine.time_limit.value_or(*left));
+  if (refine.cancel == nullptr) refine.cancel = options_.cancel;
+  estimate_.refine = RefineAbout(refine, matches_, centre_, pair_.prior, &estimate_.pose);
+  estimate_.refine_ms += MillisecondsSince(start);
+  if (!Refined()) {
+    estimate_.status = EstimateStatus::kNotRefined;
+    estimate_.message = "not refined: " + estimate_.refine.message;
+    return;
+  }
+  estimate_.num_inliers = estimate_.refine.num_inliers;
+  if (estimate_.refine.stopped == StopReason::kNone) return;
+  estimate_.stopped = estimate_.refine.stopped;
+  // Refine() was given only the rest of the limit; the message names the whole.
+  if (stop_.Asked()) estimate_.refine.message = stop_.Message();
+  estimate_.message = estimate_.refine.message;
+}
+
+// True if the search has to be made again, with a threshold for the noise that was found.
+bool Estimator::SearchAgain() {
+  constexpr double kThresholdSigmas = 3.0;
+  constexpr double kTooSmall = 1.5;
+  if (options_.ransac.threshold_px != kAutoThresholdPx || !Refined() || stop_.Asked()) return false;
+  const double threshold = kThresholdSigmas * estimate_.refine.noise_px;
+  if (!(threshold > kTooSmall * ransac_.threshold_px) || !estimate_.refine.exceeds_chance) {
+    return false;
+  }
+  ransac_.threshold_px = threshold;
+  return true;
+}
+
+bool Estimator::ExceedsChanceUnrefined() const {
+  return ExceedsChance(matches_, MotionOfPoint(estimate_.pose, centre_), estimate_.num_inliers,
+                       matches_.size(), ransac_.threshold_px,
+                       static_cast<double>(estimate_.hypotheses));
+}
+
+// Consensus and doubts, over the distinct matches; then the inliers among all.
+void Estimator::Judge() {
+  estimate_.inlier_ratio = estimate_.num_inliers / static_cast<double>(matches_.size());
+  if (Refined()) {
+    const std::vector<char> of_distinct = std::move(estimate_.refine.inliers);
+    estimate_.refine.inliers.assign(pair_.matches.size(), 0);
+    for (size_t k = 0; k < pair_.matches.size(); ++k) {
+      if (first_of_[k] < 0) continue;
+      estimate_.refine.inliers[k] = of_distinct[distinct_row_of_[first_of_[k]]];
     }
   }
-  estimate.inlier_ratio = estimate.num_inliers / static_cast<double>(matches.size());
-  const Pose about_centre = MotionOfPoint(estimate.pose, centre);
-  const bool exceeds_chance =
-      estimate.refine.IsSolutionUsable()
-          ? estimate.refine.exceeds_chance
-          : ExceedsChance(matches, about_centre, estimate.num_inliers, ransac_options.threshold_px,
-                          static_cast<double>(search.hypotheses));
-  if (!exceeds_chance) {
-    estimate.status = EstimateStatus::kNoConsensus;
-    estimate.message = std::to_string(estimate.num_inliers) + " of " +
-                       std::to_string(matches.size()) +
-                       " matches agree on a motion, no more than chance allows";
-    if (options.solver != kAutoSolver && search.solver->prior != PriorKind::kNone) {
-      estimate.message += "; is the prior right?";
+  if (!(Refined() ? estimate_.refine.exceeds_chance : ExceedsChanceUnrefined())) {
+    estimate_.status = EstimateStatus::kNoConsensus;
+    estimate_.message = std::to_string(estimate_.num_inliers) + " of " +
+                        std::to_string(matches_.size()) +
+                        " matches agree on a motion, no more than chance allows";
+    if (options_.solver != kAutoSolver && search_.solver->prior != PriorKind::kNone) {
+      estimate_.message += "; is the prior right?";
     }
-    if (estimate.stopped != StopReason::kNone) estimate.message += "; " + stop.Message();
-    return estimate;
+    if (estimate_.stopped != StopReason::kNone) estimate_.message += "; " + stop_.Message();
+    return;
   }
   const Doubt doubt =
-      FindDoubt(pair.prior, *search.solver, about_centre, matches, ransac_options.threshold_px);
-  estimate.doubtful = doubt.Any();
-  estimate.doubt = doubt.Reason();
-  if (estimate.status == EstimateStatus::kSuccess && options.refine_motion && options.check_rig &&
-      estimate.stopped == StopReason::kNone) {
-    EstimateOptions again = options;
-    again.time_limit = stop.SecondsLeft();
-    again.check_rig = false;
-    again.ransac.max_iterations = std::min(options.ransac.max_iterations, kMaxSwapIterations);
-    const auto inliers_with = [&again](const FramePair& other) {
-      const MotionEstimate e = EstimateMotion(again, other);
-      return e.status == EstimateStatus::kSuccess ? e.num_inliers : 0;
-    };
-    const bool prior_is_doubted = estimate.doubtful && search.solver->prior != PriorKind::kNone;
-    estimate.rig_doubts =
-        FindRigDoubts(pair, options.refine.scale, prior_is_doubted, estimate.refine, inliers_with);
+      FindDoubt(pair_.prior, *search_.solver, MotionOfPoint(estimate_.pose, centre_), matches_,
+                ransac_.threshold_px);
+  estimate_.doubtful = doubt.Any();
+  estimate_.doubt = doubt.Reason();
+  if (estimate_.status == EstimateStatus::kSuccess && options_.refine_motion &&
+      options_.check_rig && estimate_.stopped == StopReason::kNone) {
+    CheckRig(doubt);
   }
-  return estimate;
+}
+
+void Estimator::CheckRig(const Doubt& doubt) {
+  EstimateOptions again = options_;
+  again.time_limit = stop_.SecondsLeft();
+  again.check_rig = false;
+  again.ransac.max_iterations = std::min(options_.ransac.max_iterations, kMaxSwapIterations);
+  const auto inliers_with = [&again](const FramePair& other) {
+    const MotionEstimate e = EstimateMotion(again, other);
+    return e.status == EstimateStatus::kSuccess ? e.num_inliers : 0;
+  };
+  const bool prior_is_doubted = doubt.Any() && search_.solver->prior != PriorKind::kNone;
+  estimate_.rig_doubts = FindRigDoubts(pair_, !options_.refine.hold_distance, prior_is_doubted,
+                                       estimate_.refine, inliers_with);
+}
+
+}  // namespace
+
+MotionEstimate EstimateMotion(const EstimateOptions& options, const FramePair& pair) {
+  return Estimator(options, pair).Run();
 }
 
 }  // namespace rigel

@@ -27,7 +27,7 @@ struct EstimateOptions {
   std::string solver = "auto";
   RansacOptions ransac;  // with "auto", all solvers share its max_iterations
   bool refine_motion = true;
-  // ScaleMode::kFixed needs the prior's distance: the |t| that RANSAC finds may be arbitrary.
+  // refine.hold_distance needs the prior's distance: the |t| that RANSAC finds may be arbitrary.
   RefineSettings refine;
 
   // Seconds from the call on, >= 0. After them the call returns the best motion found by then; see

@@ -33,7 +33,7 @@ class GroupedMatches;
 
 // Which parameters are free. Every form uses the exact rotation.
 enum class RefineForm {
-  kFull,   // rotation (3), translation (3; 2 on the sphere if scale is not observable)
+  kFull,   // rotation (3), translation (3)
   kPrior,  // the prior is exact: the angle about its direction, and t (planar: in the plane)
   // Rotation (3), depths l1, l2 of a reference match, which is exact (paper eqs. a2, a5).
   kDepths,
@@ -45,16 +45,6 @@ const char* RefineFormName(RefineForm form);  // "full", "prior", ..., "bundle"
 bool ParseRefineForm(std::string_view name, RefineForm* form);
 const char* ResidualName(ResidualKind kind);  // "sampson", "angular", "algebraic"
 bool ParseResidual(std::string_view name, ResidualKind* kind);
-
-enum class ScaleMode {
-  kAuto,  // free if the matches determine it (kScaleObservableRatio), else held as it was found
-  kFree,
-  kFixed,  // |t| is the prior's distance if it has one, else as at the start
-};
-
-// Residuals beyond this many sigma are more likely outliers (uniform in the image) than inliers
-// with Gaussian noise. A gate at 3 sigma costs 2 to 3 percent of the accuracy.
-inline constexpr double kGateSigmas = 3.75;
 
 // The least-squares engine. Both have the same minimum.
 enum class RefineEngine {
@@ -73,26 +63,32 @@ struct RefineProgress {
 struct RefineSettings {
   RefineForm form = RefineForm::kFull;
   ResidualKind residual = ResidualKind::kSampson;
-  // Adds the prior as residuals, and its distance if it has one, each divided by its sigma. A part
+  // Adds the prior's direction (gravity, axis or normal) as residuals, divided by their sigma. One
   // without a sigma is left out.
   bool use_prior = false;
+
+  // The length |b| of the motion of the rig's centre is always estimated. A distance that the prior
+  // states with a sigma is a measurement and enters. What the matches leave open is held by a weak
+  // prior: log |b| is normal with standard deviation 1 about the log of the stated distance, or of
+  // this length; metres, > 0.
+  double typical_length = 1.0;
+  // Holds |t| of the body at the prior's distance, or as at the start if it has none, instead.
+  bool hold_distance = false;
 
   // Gives matches near an epipole a smaller weight (EpipoleWeights), in the fit and in the
   // covariance.
   bool epipole_weights = true;
 
-  LossKind loss = LossKind::kCauchy;
+  LossKind loss = LossKind::kTukey;
   // Scale of the loss in units of the image noise (given, or estimated from the start); > 0.
-  double loss_scale_sigmas = 4.0;
+  double loss_scale_sigmas = 6.0;
 
   RefineEngine engine = RefineEngine::kAuto;
 
   int max_rounds = 5;           // >= 1; selections of inliers
   int max_num_iterations = 50;  // >= 0, in each round
-  ScaleMode scale = ScaleMode::kAuto;
-  // 1-sigma image noise, pixels, if it is known. Else it is estimated from the n inliers: 1.4826
-  // times the median |residual|, times sqrt(n / (n - 6)). Below 16 inliers it is at least a third
-  // of the threshold.
+  // 1-sigma image noise, pixels, if it is known. Else it is estimated for each camera pair
+  // (noise_model.h).
   std::optional<double> noise_px;
 
   // Seconds from the call on, >= 0, and a flag that any thread may set: either ends the refinement
@@ -115,7 +111,8 @@ struct RefineOptions : RefineSettings {
   // The part of the prior that kPrior and kPriorDepths take as exact and that use_prior weights.
   PriorKind prior_kind = PriorKind::kNone;
   // Pixels, > 0; matches with a larger Sampson error are left out. If the noise is given, the limit
-  // is at least kGateSigmas of it. kAutoThresholdPx: as in RansacOptions.
+  // is at least 3.75 sigma of it. kAutoThresholdPx: at first as in RansacOptions, then 3.75 sigma
+  // of each camera pair.
   double threshold_px = kAutoThresholdPx;
   // Number of motions that were tried before the start was found, >= 1. The more were tried, the
   // more matches must agree (RefineSummary::exceeds_chance).
@@ -146,6 +143,7 @@ struct CameraPairFit {
   // Unit direction of the baseline R s_i + t - s_j in the body frame at time 2. Matches of this
   // pair alone determine no more of the translation. Zero without a baseline.
   std::array<double, 3> baseline = {0, 0, 0};
+  double noise_px = -1.0;  // 1 sigma, given or estimated
 };
 
 struct RefineSummary {
@@ -164,27 +162,36 @@ struct RefineSummary {
   double noise_px = -1.0;                   // given or estimated
 
   // Covariance of the perturbation (d, e) of R <- Exp(d) R, t <- t + e: rotation (radians) first,
-  // then translation (metres). It covers the parameters that were free: rank 5 if |t| was held, 2
-  // to 4 if the prior was exact. If the direction of t is not observable it covers all six, so the
-  // rotation's part allows for any translation. The depth forms take their reference as exact here.
-  // Empty if not determined.
+  // then translation (metres). It covers the parameters that were free: all six, 5 if |t| was held,
+  // 2 to 4 if the prior was exact. The depth forms take their reference as exact here. Empty if not
+  // determined.
   std::optional<Matrix6d> covariance;
+  // The same of the motion (R, b) of the rig's centre, see below. With a body's origin far from the
+  // cameras it is the more accurate one: it has no differences of large numbers.
+  std::optional<Matrix6d> rig_covariance;
+  // False if the noise of the pixels makes so much of the information that a linear theory of the
+  // errors does not hold: see covariance_note. The covariance is then a rough one.
+  bool covariance_valid = false;
+  std::string covariance_note;    // why it is not valid; empty if it is
   std::string weakest_direction;  // of the covariance, in words (WeakestDirection)
   double rotation_sigma = -1.0;   // radians; -1 if there is no covariance
   double direction_sigma = -1.0;  // of t, radians
-  // FittedPoint(), the point of the body whose motion b was fitted. If |b| was held, there is no
-  // information along b.
-  Eigen::Vector3d fitted_point = Eigen::Vector3d::Zero();
-  double rig_direction_sigma = -1.0;   // of b, radians; smaller than that of t with a far origin
-  double relative_scale_sigma = -1.0;  // of |b|, a fraction; infinite if not determined
+  // The motion b = R c + t - c of the rig's centre c (RigCentre(), body frame, metres): its unit
+  // direction in the body frame at time 2, and that direction's standard deviation. It is often
+  // known where the direction of t is not: with an origin far from the cameras and unknown |b|.
+  Eigen::Vector3d rig_center = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rig_direction = Eigen::Vector3d::Zero();
+  double rig_direction_sigma = -1.0;   // radians
+  double relative_scale_sigma = -1.0;  // of |b| by the matches alone; infinite if not determined
+  double length_sigma = -1.0;          // of |b| with a stated distance and the weak prior
+  bool length_held = false;            // |t| was held
   double parallax_px = -1.0;           // see ParallaxPercentilePx()
   double parallax_limit_px = -1.0;     // what it has to exceed for translation_observable
-  bool scale_free = false;             // |t| was refined, not held
   bool exceeds_chance = false;         // more matches agree than random ones would
   bool rotation_observable = false;
   bool translation_observable = false;      // the direction of t is observable
   bool rig_translation_observable = false;  // the direction of b is
-  bool scale_observable = false;
+  bool scale_observable = false;            // relative_scale_sigma is at most 5 percent
 
   bool IsSolutionUsable() const {
     return termination == Termination::kConverged || termination == Termination::kIterationLimit ||
@@ -209,10 +216,6 @@ RefineSummary Refine(const RefineOptions& options, const Rig& rig,
 // Internal: the same for matches that are grouped already.
 RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,
                      const MotionPrior& prior, Pose* pose);
-
-// The point of the body whose motion b a refinement fits (rig_centre.h), in the body frame, metres:
-// the rig's centre, or the body's origin if the options hold |t| or weight the prior's distance.
-Eigen::Vector3d FittedPoint(const RefineOptions& options, const MotionPrior& prior, const Rig& rig);
 
 // Internal: Refine() for `matches` whose body frame has its origin at the point `origin` of the
 // body. `pose` and the summary are of the body. If `origin` is the rig's centre, the matches are

@@ -93,8 +93,8 @@ std::optional<int> InliersIfSwapped(const FramePair& pair, int num_inliers, cons
 
 }  // namespace
 
-std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, ScaleMode scale, bool prior_is_doubted,
-                                    const RefineSummary& refine,
+std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, bool length_is_open,
+                                    bool prior_is_doubted, const RefineSummary& refine,
                                     const std::function<int(const FramePair&)>& inliers_with) {
   const std::vector<int> frozen = FrozenCameras(pair);
   std::vector<RigDoubt> doubts;
@@ -145,7 +145,7 @@ std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, ScaleMode scale, bool
     few_by_themselves.push_back(cameras.first);
   }
   const bool length_is_missing = refine.IsSolutionUsable() && refine.RigDirectionKnown() &&
-                                 !refine.scale_free && scale == ScaleMode::kAuto &&
+                                 !refine.scale_observable && length_is_open &&
                                  refine.camera_pairs.size() > 1 && inter_inliers >= kMinDoubtRows &&
                                  10 * inter_inliers >= refine.num_inliers;
   if (to_swap.empty() && length_is_missing && frozen.empty()) to_swap.push_back(*most_rows);

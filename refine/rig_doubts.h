@@ -33,7 +33,7 @@ inline constexpr double kFewFit = 0.25;
 // ... and the largest share is at least this.
 inline constexpr double kMostFit = 0.4;
 
-// Finds the contradictions after a refinement (`refine`) with this scale mode, in this order:
+// Finds the contradictions after a refinement (`refine`), in this order:
 //   - A frozen camera: nearly all of its intra-camera matches move by less than kMinMatchNoisePx
 //     (times PixelUnit()), and half of those of another camera move by more than ten times that.
 //   - Matches between two cameras, or of one camera, of which far fewer fit than of others.
@@ -41,13 +41,14 @@ inline constexpr double kMostFit = 0.4;
 //     intrinsics. This is tried if the matches between them do not fit. It is also tried if they
 //     fit and |t| is still not determined although the rig moves. A motion so long that no baseline
 //     matters then hides a baseline of the wrong sign.
+// `length_is_open`: nothing but the matches could say |t|.
 // If `prior_is_doubted`, the prior may be the reason that few matches fit. That is then not
 // reported.
 // `inliers_with` estimates the motion of a pair again and returns the number of inliers, 0 if there
 // is no motion. kMaxSwapIterations of RANSAC are enough for it.
 inline constexpr int kMaxSwapIterations = 500;
-std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, ScaleMode scale, bool prior_is_doubted,
-                                    const RefineSummary& refine,
+std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, bool length_is_open,
+                                    bool prior_is_doubted, const RefineSummary& refine,
                                     const std::function<int(const FramePair&)>& inliers_with);
 
 }  // namespace rigel

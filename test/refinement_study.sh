@@ -67,17 +67,14 @@ field() {
               --inter_share=$share --rotation_deg=$turn --seed=$seed)
             flags=(--seed=$seed)
             cameras="half inter"
-            if [[ $share == 0 ]]; then
-              flags+=(--fix_translation_norm)
-              cameras=intra
-            fi
+            if [[ $share == 0 ]]; then cameras=intra; fi
             row="| $motion | $matches | $cameras | $turn deg | $seed |"
             for form in full bundle prior depths prior-depths; do
               compare "$dir" "${flags[@]}" --refine=$form >"$work/$form"
               row+=" $(efficiency <"$work/$form") |"
             done
             row+=" $(compare "$dir" "${flags[@]}" --residual=algebraic | efficiency) |"
-            row+=" $(nees <"$work/full") | $(compare "$dir" "${flags[@]}" --estimate_noise | nees) |"
+            row+=" $(nees <"$work/full") |"
             echo "$row"
           done
         done

@@ -28,8 +28,7 @@ std::vector<BatchItem<Result>> EstimateFiles(
   {
     Progress progress(ProgramName(), static_cast<int>(input.paths.size()));
     const std::function<Result(const FramePair&)> work = [&](const FramePair& pair) {
-      EstimateOptions estimate =
-          options.use_stated_noise ? WithStatedNoise(options.estimate, pair) : options.estimate;
+      EstimateOptions estimate = options.estimate;
       estimate.refine.progress = ShowRefinement(&progress);
       return keep(pair, EstimateMotion(estimate, pair));
     };

@@ -60,20 +60,23 @@ DEFINE_string(
     "and 3D points, with reprojection errors)");
 DEFINE_bool(fix_translation_norm, false,
             "hold |t| at the distance that the file states; with --prior=truth at the true |t|");
-DEFINE_bool(estimate_noise, false,
-            "estimate the image noise from the residuals, even if the file states it");
+DEFINE_double(
+    typical_length, 1,
+    "length of the rig's motion, metres, that is expected where neither the matches nor a "
+    "distance in the file say it: the centre of a weak prior, a factor of e either way");
 DEFINE_string(
     residual, "sampson",
     "residual of the refinement: sampson (pixels), angular (angle on the viewing sphere times the "
     "mean focal length: pixels at the image centre) or algebraic (metres). "
     "algebraic is for comparison only: it is not robust, and it tends to zero motion if all "
     "matches are intra-camera and the scale is free");
-DEFINE_string(loss, "cauchy",
+DEFINE_string(loss, "tukey",
               "robust loss of the refinement: none, huber, cauchy, tukey or truncated");
 DEFINE_string(
     threshold_px, "auto",
     "RANSAC inlier threshold on the Sampson error, pixels. Three standard deviations of the "
-    "image noise work best. auto: 1.5, or 1/300 of the shortest focal length if that is less");
+    "image noise work best. auto: 1.5, or 1/300 of the shortest focal length if that is less; the "
+    "refinement then follows the noise of each camera pair. A number is kept");
 DEFINE_double(
     confidence, 0.9999,
     "RANSAC stops when, with this probability, it has drawn a sample without outliers; between 0 "
@@ -169,14 +172,14 @@ bool ReadPriorFlags(PriorSourceOptions* prior, std::string* error) {
 // What does not go together.
 bool CheckRefinement(const EstimateOptions& estimate, std::string* error) {
   if (!estimate.refine_motion &&
-      (FLAGS_fix_translation_norm || FLAGS_use_prior_in_refine || FLAGS_estimate_noise ||
-       FLAGS_loss != "cauchy" || FLAGS_residual != "sampson")) {
+      (FLAGS_fix_translation_norm || FLAGS_use_prior_in_refine || FLAGS_typical_length != 1 ||
+       FLAGS_loss != "tukey" || FLAGS_residual != "sampson")) {
     return Refuse(
-        "--loss, --residual, --fix_translation_norm, --use_prior_in_refine and --estimate_noise "
+        "--loss, --residual, --fix_translation_norm, --use_prior_in_refine and --typical_length "
         "have no effect without a refinement (--refine=none)",
         error);
   }
-  if (estimate.refine.residual == ResidualKind::kAlgebraic && FLAGS_loss != "cauchy") {
+  if (estimate.refine.residual == ResidualKind::kAlgebraic && FLAGS_loss != "tukey") {
     return Refuse(
         "--loss=" + FLAGS_loss + ": the algebraic residual is in metres and takes no loss", error);
   }
@@ -202,7 +205,11 @@ bool ReadRefinementFlags(EstimateOptions* estimate, std::string* error) {
     return WrongValue("loss", FLAGS_loss, "none, huber, cauchy, tukey or truncated", error);
   }
   refine.use_prior = FLAGS_use_prior_in_refine;
-  refine.scale = FLAGS_fix_translation_norm ? ScaleMode::kFixed : ScaleMode::kAuto;
+  refine.hold_distance = FLAGS_fix_translation_norm;
+  refine.typical_length = FLAGS_typical_length;
+  if (!(refine.typical_length > 0) || !std::isfinite(refine.typical_length)) {
+    return WrongValue("typical_length", Text(FLAGS_typical_length), "a positive number", error);
+  }
   return CheckRefinement(*estimate, error);
 }
 
@@ -231,7 +238,6 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
       !ReadRansacFlags(&options->estimate.ransac, error)) {
     return false;
   }
-  options->use_stated_noise = !FLAGS_estimate_noise;
   if (!(FLAGS_time_limit_ms >= 0) || !std::isfinite(FLAGS_time_limit_ms)) {
     return WrongValue("time_limit_ms", Text(FLAGS_time_limit_ms), "a number from 0", error);
   }

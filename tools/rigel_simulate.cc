@@ -190,7 +190,7 @@ bool MatchesFromFlags(SceneMatchOptions* options, std::string* error) {
   if (!options->camera_noise_px.empty() && IsGiven("noise_px")) {
     return Refuse("--noise_px: --camera_noise_px replaces it", error);
   }
-  if (!ParseNoiseModel(FLAGS_noise_model, &options->noise_model)) {
+  if (!ParseNoiseShape(FLAGS_noise_model, &options->noise_model)) {
     return WrongValue("noise_model", FLAGS_noise_model, "gaussian, mixture, laplace or t3", error);
   }
   options->num_matches = FLAGS_num_matches;

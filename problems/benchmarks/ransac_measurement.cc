@@ -50,7 +50,7 @@ std::optional<RansacProblem> MakeProblem(const SceneOptions& scene, int index) {
 
 MotionEstimate EstimateOnce(const RansacTask& task, const FramePair& pair) {
   if (task.opengv.empty()) {
-    return EstimateMotion(WithStatedNoise(task.estimate, pair), pair);
+    return EstimateMotion(task.estimate, pair);
   }
   MotionEstimate estimate;
   OpenGvEstimate peer;
@@ -102,11 +102,10 @@ bool HoldsStaticMatches(const FramePair& clean, const Pose& pose, double thresho
   return static_cast<double>(count(pose)) >= kShare * static_cast<double>(count(*clean.truth));
 }
 
-RefineOptions RefinementOf(const RansacTask& task, const FramePair& pair) {
+RefineOptions RefinementOf(const RansacTask& task) {
   RefineOptions refine(task.estimate.refine);
   refine.prior_kind = FindSolver(task.estimate.solver)->prior;
   refine.threshold_px = task.estimate.ransac.threshold_px;
-  refine.noise_px = pair.noise_px;
   return refine;
 }
 
@@ -174,7 +173,7 @@ class Collector {
   void AddSuccess(const RansacProblem& problem, const MotionEstimate& estimate,
                   std::optional<double> rotation) {
     const FramePair& pair = problem.clean ? *problem.clean : problem.pair;
-    const RefineOptions refine = RefinementOf(task_, pair);
+    const RefineOptions refine = RefinementOf(task_);
     const auto bound = ComputeCramerRaoBound(refine, pair);
     if (!bound) return;
     ++with_bound_;

@@ -124,7 +124,7 @@ std::vector<RefineBenchmarkRow> BenchmarkRefinement(const RefineBenchmarkOptions
                          small.loss_scale = kLossScaleSigmas * kNoisePx;
                          small.max_num_iterations = kMaxIterations;
                          small.tolerance = kTolerance;
-                         const bool ok = engine.Minimize(small, mask, pose);
+                         const bool ok = engine.Minimize(small, mask, PriorResiduals(), 1.0, pose);
                          *iterations = engine.num_iterations();
                          return ok;
                        }));

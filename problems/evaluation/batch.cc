@@ -74,7 +74,7 @@ FileComparison CompareFiles(const ComparisonOptions& options, const std::vector<
     for (size_t s = 0; s < candidates.size(); ++s) {
       if (choose && !HasPrior(pair.prior, FindSolver(candidates[s].solver)->prior)) out[s] = true;
       if (out[s]) continue;
-      results[s] = ComparePair(pair, candidates[s], options.use_stated_noise);
+      results[s] = ComparePair(pair, candidates[s]);
     }
     return results;
   };

@@ -30,8 +30,7 @@ struct ComparisonOptions {
   std::vector<std::string> solvers;  // empty: all whose prior every pair has
   MatchUse use = MatchUse::kAll;
   PriorSourceOptions prior;
-  EstimateOptions estimate;      // its solver is replaced by each of `solvers`
-  bool use_stated_noise = true;  // the noise that the files state
+  EstimateOptions estimate;  // its solver is replaced by each of `solvers`
   int num_threads = 1;
 };
 
@@ -86,20 +85,14 @@ struct PairResult {
 // it.
 inline constexpr double kMinTrueTranslation = 1e-2;
 
-// The options for one pair: the noise that the pair states, if any, is the refinement's.
-EstimateOptions WithStatedNoise(EstimateOptions options, const FramePair& pair);
-
-// Runs one solver on a pair whose matches are selected and whose prior is applied. Options are
-// those of WithStatedNoise() if `use_stated_noise`.
-PairResult ComparePair(const FramePair& pair, const EstimateOptions& options,
-                       bool use_stated_noise);
+// Runs one solver on a pair whose matches are selected and whose prior is applied.
+PairResult ComparePair(const FramePair& pair, const EstimateOptions& options);
 
 // The same for all `pairs`, in input order. Apart from the times, results do not depend on the
 // number of threads. `progress` (may be empty) is called after each pair, from any thread.
 std::vector<PairResult> RunSolver(const std::vector<FramePair>& pairs,
                                   const EstimateOptions& options, int num_threads,
-                                  const std::function<void()>& progress,
-                                  bool use_stated_noise = true);
+                                  const std::function<void()>& progress);
 
 // Mean NEES over mean degrees of freedom, and the 99 percent interval of this ratio if the
 // covariance is right.

@@ -14,6 +14,7 @@
 #include "rigel/refine/least_squares/noise_information.h"
 #include "rigel/refine/least_squares/prior_residuals.h"
 #include "rigel/refine/least_squares/uncertainty.h"
+#include "rigel/refine/search/noise_model.h"
 
 namespace rigel {
 namespace {
@@ -30,7 +31,7 @@ std::vector<char> TrueInliers(const FramePair& pair) {
   const GroupedMatches matches(pair.rig, pair.matches);
   std::vector<double> errors;
   std::vector<char> grouped;
-  matches.SelectInliers(*pair.truth, kGateSigmas * *pair.noise_px, &errors, &grouped);
+  matches.SelectInliers(*pair.truth, kBoundSigmas * *pair.noise_px, &errors, &grouped);
   std::vector<char> inliers(grouped.size());
   for (int k = 0; k < matches.size(); ++k) inliers[matches.original(k)] = grouped[k];
   return inliers;
@@ -137,15 +138,10 @@ bool SumInliers(const FramePair& pair, const Eigen::Vector3d& centre, const Pose
 
 // Of what the pair states about the body's motion, in the perturbation of that.
 Matrix6d StatedInformation(const RefineOptions& options, const FramePair& pair) {
-  MotionPrior stated;
-  if (options.use_prior) {
-    stated = pair.prior;
-  } else {
-    stated.distance = pair.prior.distance;
-    stated.distance_sigma = pair.prior.distance_sigma;
-  }
-  const PriorResiduals prior(stated, options.use_prior ? options.prior_kind : PriorKind::kNone,
-                             *pair.truth);
+  PriorParts parts;
+  if (options.use_prior) parts.direction = options.prior_kind;
+  parts.distance = true;
+  const PriorResiduals prior(pair.prior, parts, *pair.truth);
   PriorResiduals::Residuals r;
   PriorResiduals::Jacobian J;
   prior.Evaluate(*pair.truth, &r, &J);
@@ -190,14 +186,14 @@ std::optional<CramerRaoBound> ComputeCramerRaoBound(const RefineOptions& options
       of_matches.sum + to_body.transpose() * StatedInformation(options, pair) * to_body;
   const Matrix6d without_length = information - of_matches.noise;
   MotionBasis basis;
-  if (options.scale == ScaleMode::kFixed) {
+  if (options.hold_distance) {
     // |t| is that of the body.
     basis = BodyFromPointJacobian(truth.R, -centre) * free_directions(*pair.truth, false);
   } else {
     basis = free_directions(truth, true);
     const double length = truth.t.norm();
     if (length > 0) {
-      const Eigen::Vector3d log_length = truth.t / (length * length * kWeakLogLengthSigma);
+      const Eigen::Vector3d log_length = truth.t / (length * length * kLengthSigma);
       information.block<3, 3>(3, 3) += log_length * log_length.transpose();
     }
   }

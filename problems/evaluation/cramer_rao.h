@@ -20,20 +20,16 @@ struct CramerRaoBound {
 };
 static_assert(kSameLayoutEverywhere<CramerRaoBound>, "no member of CramerRaoBound may be aligned");
 
-// Without knowing it, log |b| is normal about the true one with this standard deviation: the weak
-// length, which keeps |b| finite where the matches do not determine it.
-inline constexpr double kWeakLogLengthSigma = 1.0;
-
 // The inverse of the information of the true inliers at the true motion, over all six parameters
 // (what is known exactly left out: the prior with kPrior and kPriorDepths, |t| with
-// ScaleMode::kFixed).
+// hold_distance).
 //
 // Information: J'J / sigma^2, J of the Sampson errors, sigma the pair's noise_px; matches that
 // share a pixel are weighted by the inverse of the covariance of their errors, so that a match that
 // is repeated counts once. To it come the weak length, the distance of the pair's prior if it has a
 // sigma, and, with options.use_prior, the rest of the prior.
 //
-// The inliers are those of columns.inlier; else the matches with an error below kGateSigmas sigma
+// The inliers are those of columns.inlier; else the matches with an error below kBoundSigmas sigma
 // that are in front of their cameras. J is that of columns.exact; else what the noise of the
 // measured pixels adds is subtracted (noise_information.h).
 //
@@ -43,6 +39,8 @@ inline constexpr double kWeakLogLengthSigma = 1.0;
 std::optional<CramerRaoBound> ComputeCramerRaoBound(const RefineOptions& options,
                                                     const FramePair& pair);
 
+// Of Gaussian errors one in 6000 is larger.
+inline constexpr double kBoundSigmas = 3.75;
 // The time grows with the third power.
 inline constexpr int kMaxLinkedMatches = 300;
 

@@ -73,13 +73,23 @@ Json MatrixJson(const Matrix6d& matrix) {
   return rows;
 }
 
+Json VectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
 void PutUncertainty(const RefineSummary& refine, Json* entry) {
   if (refine.covariance) {
     PutKnown("rotation_sd_deg", RadToDeg(refine.rotation_sigma), entry);
     if (refine.translation_observable) {
       PutKnown("translation_dir_sd_deg", RadToDeg(refine.direction_sigma), entry);
     }
+    if (refine.RigDirectionKnown()) {
+      PutKnown("rig_direction_sd_deg", RadToDeg(refine.rig_direction_sigma), entry);
+      (*entry)["rig_direction"] = VectorJson(refine.rig_direction);
+    }
+    (*entry)["rig_center"] = VectorJson(refine.rig_center);
+    PutKnown("length_sd", refine.length_sigma, entry);
     (*entry)["covariance"] = MatrixJson(*refine.covariance);
+    (*entry)["covariance_valid"] = refine.covariance_valid;
+    if (!refine.covariance_valid) (*entry)["covariance_note"] = refine.covariance_note;
     if (!refine.weakest_direction.empty()) {
       (*entry)["weakest_direction"] = refine.weakest_direction;
     }
@@ -97,8 +107,10 @@ void PutRefined(const MotionEstimate& e, Json* entry) {
   (*entry)["scale_observable"] = refine.scale_observable;
   Json& camera_pairs = (*entry)["camera_pairs"] = Json::array();
   for (const CameraPairFit& fit : refine.camera_pairs) {
-    camera_pairs.push_back(
-        {{"cameras", {fit.camera1, fit.camera2}}, {"rows", fit.rows}, {"inliers", fit.inliers}});
+    camera_pairs.push_back({{"cameras", {fit.camera1, fit.camera2}},
+                            {"rows", fit.rows},
+                            {"inliers", fit.inliers},
+                            {"noise_px", fit.noise_px}});
   }
   for (const RigDoubt& doubt : e.rig_doubts) (*entry)["rig_doubts"].push_back(doubt.message);
   PutUncertainty(refine, entry);
@@ -146,7 +158,8 @@ Shown ShownOf(const MotionEstimate& e, const MatchCount& matches) {
                     e.refine.termination == Termination::kStopped;
   shown.rotation = shown.not_asked || e.refine.rotation_observable;
   shown.direction = shown.not_asked || e.refine.translation_observable;
-  shown.scale = shown.not_asked ? e.raw.has_scale && matches.any_inter : e.refine.scale_observable;
+  shown.scale = shown.not_asked ? e.raw.has_scale && matches.any_inter
+                                : KnowsLength(e.refine) && e.refine.translation_observable;
   return shown;
 }
 

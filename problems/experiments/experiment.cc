@@ -86,7 +86,7 @@ bool RunExperimentPoint(const ExperimentPlan& plan, const ExperimentPoint& point
       if (runs[r].known != nullptr) continue;
       const EstimateOptions options =
           ExperimentEstimate(runs[r].solver, runs[r].loop, pair.noise_px.value_or(0.0));
-      results[r][k] = ComparePair(pair, options, true);
+      results[r][k] = ComparePair(pair, options);
     }
     if (progress) progress();
   });

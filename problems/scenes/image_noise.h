@@ -9,10 +9,10 @@
 namespace rigel {
 
 // The standard deviation of the noise for a sigma of 1: that of the mixture is 1.445.
-double StandardDeviation(NoiseModel model);
+double StandardDeviation(NoiseShape shape);
 
 // Independent noise on both coordinates.
-Pixel DrawNoise(NoiseModel model, double sigma_px, Random* random);
+Pixel DrawNoise(NoiseShape shape, double sigma_px, Random* random);
 
 }  // namespace rigel
 

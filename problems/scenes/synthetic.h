@@ -45,17 +45,17 @@ inline constexpr int kMinRingOfNeighbours = 5;
 //   kMixture   Gaussian, 80 percent of 0.6 sigma and 20 percent of 3 sigma
 //   kLaplace   of that standard deviation
 //   kStudent3  Student's t with three degrees of freedom, of that standard deviation
-enum class NoiseModel { kGaussian, kMixture, kLaplace, kStudent3 };
+enum class NoiseShape { kGaussian, kMixture, kLaplace, kStudent3 };
 
 // "gaussian", "mixture", "laplace", "t3". False if there is no such name.
-bool ParseNoiseModel(std::string_view name, NoiseModel* model);
+bool ParseNoiseShape(std::string_view name, NoiseShape* shape);
 
 // What the matches of a scene are like: of this one, and of the street (street.h).
 struct SceneMatchOptions {
   int num_matches = 200;
   double noise_px = 0.5;                // sigma on each image coordinate of both views
   std::vector<double> camera_noise_px;  // the same of each camera instead; empty: noise_px
-  NoiseModel noise_model = NoiseModel::kGaussian;
+  NoiseShape noise_model = NoiseShape::kGaussian;
   double inter_share = 0.0;    // of the matches; needs two cameras
   double outlier_share = 0.0;  // second point uniform in the image
   double moving_share = 0.0;   // on the car; none of them an outlier

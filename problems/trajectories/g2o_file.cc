@@ -31,7 +31,7 @@ std::string WhyNoEdge(const FramePair& pair, const MotionEstimate& e) {
 // Sets the rig's centre at rest, with the covariance of the estimate about it. If |t| is not
 // determined, the covariance of the translation is kStillMetres squared.
 void SetStanding(Pose* pose, RefineSummary* refine) {
-  const Eigen::Vector3d& point = refine->fitted_point;
+  const Eigen::Vector3d& point = refine->rig_center;
   const Matrix6d from_body = BodyFromPointJacobian(pose->R, -point);
   Matrix6d covariance = from_body * *refine->covariance * from_body.transpose();
   const double length = MotionOfPoint(*pose, point).t.norm();
@@ -48,7 +48,7 @@ void SetStanding(Pose* pose, RefineSummary* refine) {
   const Matrix6d to_body = BodyFromPointJacobian(pose->R, point);
   refine->covariance = Matrix6d(to_body * covariance * to_body.transpose());
   refine->rig_translation_observable = true;
-  refine->scale_free = true;
+  refine->length_sigma = 0.0;
   *pose = Standing(*pose, *refine);
 }
 
@@ -76,14 +76,10 @@ struct LengthCounts {
 BetweenFactor EdgeOf(const FramePair& pair, const MotionEstimate& estimate, LengthCounts* counts) {
   Pose pose = estimate.pose;
   RefineSummary refine = estimate.refine;
-  // A sigma of -1 or NaN is unknown.
-  const bool has_length =
-      refine.scale_observable ||
-      (refine.relative_scale_sigma >= 0 && refine.relative_scale_sigma <= kRoughScaleRatio);
   if (!refine.RigDirectionKnown()) {
     SetStanding(&pose, &refine);
     ++counts->standing;
-  } else if (!has_length) {
+  } else if (!KnowsLength(refine)) {
     const std::optional<double>& distance = pair.prior.distance;
     const bool stated = distance.has_value() && *distance > 0;
     SetUndeterminedLength(stated ? *distance : kLengthWithoutScale, &pose, &refine);

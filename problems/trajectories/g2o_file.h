@@ -32,9 +32,8 @@ inline constexpr double kLengthWithoutScale = 1.0;
 // Each of these is told in one line of printable text in *notes and as a comment. A pose that no
 // edge reaches has no vertex.
 //
-// If the scale is not observable, an edge has no information along t, yet needs a length. It is |t|
-// of the estimate if its relative standard deviation is at most kRoughScaleRatio. Else it is the
-// distance of the pair's prior, else kLengthWithoutScale. A note counts the edges with these two.
+// Where nothing says the length of the rig's motion an edge has no information on it, yet needs
+// one: the distance of the pair's prior, else kLengthWithoutScale. A note counts these edges.
 //
 // Where the rig stands still the edge has the rotation of the estimate, its centre at rest and the
 // covariance of the estimate; where |t| is not determined at all, kStillMetres for the translation.

@@ -8,6 +8,7 @@
 #include "rigel/core/rig_centre.h"
 #include "rigel/problems/io/csv.h"
 #include "rigel/problems/io/printable.h"
+#include "rigel/refine/between_factor.h"
 
 namespace rigel {
 namespace {
@@ -31,8 +32,13 @@ bool StandsStill(const FramePair& pair, const RefineSummary& refine) {
   return !prior.distance || *prior.distance <= kStillMetres + kStillSigmas * prior.distance_sigma;
 }
 
+bool KnowsLength(const RefineSummary& refine) {
+  // A sigma of -1 or NaN is unknown.
+  return refine.length_held || (refine.length_sigma >= 0 && refine.length_sigma <= kMaxLengthSigma);
+}
+
 Pose Standing(const Pose& pose, const RefineSummary& refine) {
-  return MotionOfBody({pose.R, Eigen::Vector3d::Zero()}, refine.fitted_point);
+  return MotionOfBody({pose.R, Eigen::Vector3d::Zero()}, refine.rig_center);
 }
 
 namespace {
@@ -58,20 +64,18 @@ Step StepOf(const FramePair& pair, const MotionEstimate& e, bool has_inter) {
       step.raw = Standing(step.raw, refine);
       return step;
     }
-    // A sigma of -1 or NaN is unknown.
-    has_length = refine.scale_observable || (refine.relative_scale_sigma >= 0 &&
-                                             refine.relative_scale_sigma <= kRoughScaleRatio);
+    has_length = KnowsLength(refine);
   }
   if (!has_length) {
     if (!pair.prior.distance || !(*pair.prior.distance > 0)) {
       return none("length of translation not determined, no distance stated");
     }
     step.stated_length = true;
-    step.estimate = WithBodyLength(step.estimate, refine.fitted_point, *pair.prior.distance);
+    step.estimate = WithBodyLength(step.estimate, refine.rig_center, *pair.prior.distance);
   }
   if (!e.raw.has_scale || step.stated_length) {
     const double length = step.estimate.t.norm();
-    if (length > 0) step.raw = WithBodyLength(step.raw, refine.fitted_point, length);
+    if (length > 0) step.raw = WithBodyLength(step.raw, refine.rig_center, length);
   }
   return step;
 }

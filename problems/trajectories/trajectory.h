@@ -19,8 +19,9 @@ namespace rigel {
 inline constexpr double kSameTimeSeconds = 1e-6;
 inline constexpr double kSameTimeShare = 0.1;
 
-// An estimated |t| counts as a length up to this relative standard deviation.
-inline constexpr double kRoughScaleRatio = 0.5;
+// True if a refined motion has a length: its relative standard deviation is at most kMaxLengthSigma
+// (between_factor.h), or |t| was held.
+bool KnowsLength(const RefineSummary& refine);
 
 // True if the matches say that the rig moved by less than kStillMetres, and the pair states no
 // distance that contradicts this.
@@ -57,8 +58,8 @@ struct Trajectory {
 // in the drive, increasing, or is empty where they follow each other. A trajectory ends
 //   - at a pair that does not follow the one before (WhyNotNext);
 //   - at a pair that has no motion, or none with a length: not estimated or not refined, rotation
-//     or direction of t not observable, |t| not determined (its relative standard deviation above
-//     kRoughScaleRatio) and no distance stated. That pair is in none.
+//     or direction of t not observable, |t| not determined (KnowsLength()) and
+//     no distance stated. That pair is in none.
 // Standing still is no gap: StandsStill() makes a Standing() step. Without a refinement |t| counts
 // as determined where the hypothesis has a scale and matches between cameras, which `has_inter`
 // tells of each pair. A raw motion without a length of its own has that of the estimate.

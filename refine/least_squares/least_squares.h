@@ -30,9 +30,9 @@ struct LeastSquaresOptions {
   // fraction of it. With n residuals the step is then about sqrt(n tolerance) standard deviations
   // long. It is still taken.
   double tolerance = 1e-4;
-  // SmallEngine::Minimize() only: TranslationForm::kInverseScale instead of a free t, for matches
-  // that hardly determine |t|.
-  bool inverse_scale = false;
+  // SmallEngine::Minimize() only: |t| stays within a quarter and a thousand times the start's, for
+  // matches that hardly determine it. At a tiny |t| there are false minima (sign_and_scale.h).
+  bool limits_length = false;
 
   // Ceres only; the small engine always has Sampson residuals and no points.
   ResidualKind residual = ResidualKind::kSampson;

@@ -25,6 +25,7 @@ namespace rigel {
 
 // The derivatives of one match's Sampson error. Pixel coordinates in the order u1, v1, u2, v2.
 struct SampsonRow {
+  double residual;                             // r, pixels
   Vector6d by_motion;                          // J, pixels
   UnalignedMatrix<4> gradient;                 // dr/dp of an exact match: of unit length
   UnalignedMatrix<6, 4> by_motion_and_pixels;  // dJ/dp
@@ -36,12 +37,21 @@ struct SampsonRow {
 bool DifferentiateSampson(const GroupLinearization& linear, const Eigen::Vector3d& p1,
                           const Eigen::Vector3d& p2, SampsonRow* row);
 
+// The same without dJ/dp, which takes most of the time.
+bool DifferentiateSampsonOnce(const GroupLinearization& linear, const Eigen::Vector3d& p1,
+                              const Eigen::Vector3d& p2, SampsonRow* row);
+
 // D = sum w^2 (dJ/dp)(dJ/dp)' over the matches at `pose`; `weights` (grouped order, 0 leaves a
 // match out) are those of SampsonInformation(), which is D's H once it is divided by the variance
 // of the noise. A match with a noise of its own adds the same to D whatever that noise is: leave
 // 1 / sigma out of the weights.
 Matrix6d NoiseInformation(const GroupedMatches& matches, const std::vector<double>& weights,
                           const Pose& pose);
+
+// The same of the matches of one camera pair, from at most `max_matches` of those that have a
+// weight, evenly spaced, in proportion.
+Matrix6d NoiseInformation(const GroupLinearization& linear, const PixelArrays& pixels,
+                          const double* weights, int max_matches);
 
 }  // namespace rigel
 

@@ -5,13 +5,18 @@
 
 namespace rigel {
 
-PriorResiduals::PriorResiduals(const MotionPrior& prior, PriorKind kind, const Pose& start) {
-  with_distance_ = prior.distance.has_value() && prior.distance_sigma > 0;
+PriorResiduals::PriorResiduals(const MotionPrior& prior, const PriorParts& parts, const Pose& start)
+    : typical_length_(parts.typical_length), point_(parts.point.data()) {
+  with_distance_ = parts.distance && prior.distance.has_value() && prior.distance_sigma > 0;
   if (with_distance_) {
     distance_ = *prior.distance;
     distance_weight_ = 1.0 / prior.distance_sigma;
-    size_ = 1;
   }
+  SetDirection(prior, parts.direction, start);
+  size_ = num_direction_ + (with_distance_ ? 1 : 0) + (typical_length_ > 0 ? 1 : 0);
+}
+
+void PriorResiduals::SetDirection(const MotionPrior& prior, PriorKind kind, const Pose& start) {
   if (!HasPrior(prior, kind)) return;
   const double angle = std::max(LogSO3(start.R).norm(), kMinAxisAngle);
   const double chord = 2.0 * std::sin(0.5 * std::min(angle, 3.0));
@@ -39,19 +44,33 @@ PriorResiduals::PriorResiduals(const MotionPrior& prior, PriorKind kind, const P
   }
   across_ = TangentBasis(to_);
   num_direction_ = with_normal_ ? 3 : 2;
-  size_ += num_direction_;
 }
 
 void PriorResiduals::Evaluate(const Pose& pose, Residuals* residuals, Jacobian* jacobian) const {
   residuals->resize(size_);
   if (jacobian != nullptr) jacobian->setZero(size_, 6);
   if (size_ == 0) return;
+  int row = num_direction_;
   if (with_distance_) {
-    const double norm = pose.t.norm();
-    (*residuals)(num_direction_) = distance_weight_ * (norm - distance_);
-    // At t = 0 the derivative of |t| does not exist.
+    const Eigen::Vector3d turned_point = pose.R * point_;
+    const Eigen::Vector3d t = pose.t + point_ - turned_point;
+    const double norm = t.norm();
+    (*residuals)(row) = distance_weight_ * (norm - distance_);
+    // At t = 0 the derivative of |t| does not exist. dt = e + [R c]x d.
     if (jacobian != nullptr && norm > 0) {
-      jacobian->block<1, 3>(num_direction_, 3) = distance_weight_ / norm * pose.t.transpose();
+      const Eigen::Vector3d by_t = distance_weight_ / norm * t;
+      jacobian->block<1, 3>(row, 0) = by_t.cross(turned_point).transpose();
+      jacobian->block<1, 3>(row, 3) = by_t.transpose();
+    }
+    ++row;
+  }
+  if (typical_length_ > 0) {
+    // A vanishing b has no logarithm; a length of this fraction stands for it.
+    constexpr double kMinLength = 1e-12;
+    const double norm = std::max(pose.t.norm(), kMinLength * typical_length_);
+    (*residuals)(row) = std::log(norm / typical_length_) / kLengthSigma;
+    if (jacobian != nullptr) {
+      jacobian->block<1, 3>(row, 3) = pose.t.transpose() / (norm * norm * kLengthSigma);
     }
   }
   if (num_direction_ == 0) return;

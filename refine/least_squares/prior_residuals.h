@@ -7,10 +7,14 @@
 //             rotation (at most 3). Below kMinAxisAngle an axis is not measurable; a is then
 //             kMinAxisAngle.
 //   normal    the same for R n - n, and the component of t along n over |t| sigma
-//   distance  (|t| - D) / sigma, D for example from wheel odometry; alone or with another one
-// A part without a sigma gives no residual.
+//   distance  (|t| - D) / sigma, D for example from wheel odometry
+//   length    log(|b| / L) / kLengthSigma: a weak prior of what the matches do not say
+// A part without a sigma gives no residual. Motions are of a point c of the body: b is its motion,
+// and t = b + c - R c that of the body's origin.
 #ifndef RIGEL_REFINE_LEAST_SQUARES_PRIOR_RESIDUALS_H_
 #define RIGEL_REFINE_LEAST_SQUARES_PRIOR_RESIDUALS_H_
+
+#include <array>
 
 #include <Eigen/Core>
 
@@ -21,7 +25,17 @@
 namespace rigel {
 
 inline constexpr double kMinAxisAngle = 1e-3;  // radians
-inline constexpr int kMaxPriorResiduals = 4;
+inline constexpr int kMaxPriorResiduals = 5;
+// Standard deviation of log |b| about the typical length: a factor of e either way.
+inline constexpr double kLengthSigma = 1.0;
+
+// Which parts become residuals.
+struct PriorParts {
+  PriorKind direction = PriorKind::kNone;  // gravity, axis or normal
+  bool distance = false;
+  double typical_length = 0.0;              // L, metres; 0: no such residual
+  std::array<double, 3> point = {0, 0, 0};  // c, metres in the body frame
+};
 
 class PriorResiduals {
  public:
@@ -32,8 +46,7 @@ class PriorResiduals {
 
   PriorResiduals() = default;
   // The weights of axis and normal depend on the angle and |t| of `start` and stay fixed.
-  // `kind` chooses which direction of the prior is used.
-  PriorResiduals(const MotionPrior& prior, PriorKind kind, const Pose& start);
+  PriorResiduals(const MotionPrior& prior, const PriorParts& parts, const Pose& start);
 
   int size() const { return size_; }
 
@@ -42,12 +55,16 @@ class PriorResiduals {
   void Evaluate(const Pose& pose, Residuals* residuals, Jacobian* jacobian) const;
 
  private:
+  void SetDirection(const MotionPrior& prior, PriorKind kind, const Pose& start);
+
   int size_ = 0;
   int num_direction_ = 0;
   bool with_normal_ = false;
   bool with_distance_ = false;
   double distance_ = 0.0;
   double distance_weight_ = 0.0;
+  double typical_length_ = 0.0;
+  Eigen::Vector3d point_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d from_ = Eigen::Vector3d::Zero();  // R from_ = to_
   Eigen::Vector3d to_ = Eigen::Vector3d::Zero();
   Matrix3x2d across_ = Matrix3x2d::Zero();

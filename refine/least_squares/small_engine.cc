@@ -181,17 +181,20 @@ LeastSquaresSummary SmallEngine::Solve(const LeastSquaresOptions& options,
 }
 
 bool SmallEngine::Minimize(const LeastSquaresOptions& options, const std::vector<char>& mask,
-                           Pose* pose) {
+                           const PriorResiduals& prior, double prior_unit, Pose* pose) {
+  constexpr LengthRange kRange = {0.25, 1000.0};
   num_iterations_ = 0;
+  const double length = pose->t.norm();
+  LengthRange range;
+  if (options.limits_length) range = {kRange.min * length, kRange.max * length};
   MotionParameterization parameterization;
-  const auto form = options.inverse_scale ? TranslationForm::kInverseScale : TranslationForm::kFree;
-  if (!parameterization.Set(RotationForm::kFree, form, *pose, Alignment(), RayPair())) {
+  if (!parameterization.Set(RotationForm::kFree, {}, *pose, Alignment(), RayPair(), range)) {
     return false;
   }
   weights_.assign(mask.begin(), mask.end());
   double parameters[6] = {0, 0, 0, 0, 0, 0};
   const LeastSquaresSummary summary =
-      Solve(options, parameterization, weights_, PriorResiduals(), 1.0, parameters);
+      Solve(options, parameterization, weights_, prior, prior_unit, parameters);
   if (!summary.usable || !(summary.final_cost < summary.initial_cost)) return false;
   Pose result;
   parameterization.Evaluate(parameters, &result, nullptr);

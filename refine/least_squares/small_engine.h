@@ -43,9 +43,10 @@ class SmallEngine {
                             double prior_unit, double* parameters);
 
   // Minimizes over rotation and translation, for the matches with mask[k] != 0 (grouped order, one
-  // entry for each match). False, and `pose` unchanged, if no step lowers the cost or the result is
-  // not finite.
-  bool Minimize(const LeastSquaresOptions& options, const std::vector<char>& mask, Pose* pose);
+  // entry for each match). False, and `pose` unchanged, if no step lowers the cost, the result is
+  // not finite, or t = 0.
+  bool Minimize(const LeastSquaresOptions& options, const std::vector<char>& mask,
+                const PriorResiduals& prior, double prior_unit, Pose* pose);
 
   int num_iterations() const { return num_iterations_; }  // of the last call
 

@@ -10,7 +10,6 @@
 #include <Eigen/Geometry>
 
 #include "rigel/core/angles.h"
-#include "rigel/core/median.h"
 #include "rigel/refine/least_squares/normal_equations.h"
 
 namespace rigel {
@@ -21,24 +20,16 @@ namespace {
 // hundred, rounding makes less than this of a zero.
 constexpr double kMinEigenvalue = 1e-11;
 
-// J'J of the Sampson residuals of one camera pair, each times its weight.
-Matrix6d GroupInformation(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
-                          const double* weights) {
-  MotionNormalEquations sum;
-  AddNormalEquations(SampsonKernelOptions(), matches, group, matches.Pixels(group), weights, pose,
-                     /*derivatives=*/true, &sum);
-  return sum.curvature;
-}
-
 }  // namespace
 
 Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<double>& weights,
                             const Pose& pose) {
-  Matrix6d information = Matrix6d::Zero();
+  MotionNormalEquations sum;
   for (const MatchGroup& group : matches.groups()) {
-    information += GroupInformation(matches, group, pose, weights.data() + group.begin);
+    AddNormalEquations(SampsonKernelOptions(), matches, group, matches.Pixels(group),
+                       weights.data() + group.begin, pose, /*derivatives=*/true, &sum);
   }
-  return information;
+  return sum.curvature;
 }
 
 void EpipoleWeights(const GroupedMatches& matches, const Pose& pose, double noise_px,
@@ -50,86 +41,6 @@ void EpipoleWeights(const GroupedMatches& matches, const Pose& pose, double nois
                           F.topLeftCorner<2, 2>().squaredNorm();
     GradientWeights(matches.Pixels(group), F.data(), floor2, weights->data() + group.begin);
   }
-}
-
-namespace {
-
-// Appends the squares of `factor` times the parallax in pixels, for the group's matches whose
-// weight is not zero.
-template <class Weight>
-void AppendSquaredParallaxPx(const GroupedMatches& matches, const MatchGroup& group,
-                             const std::vector<Weight>& weights, const Pose& pose, double factor,
-                             std::vector<double>* squares) {
-  const PinholeCamera& c = matches.rig().cameras[group.camera2].intrinsics;
-  const double pixels = factor * 0.5 * (c.fx + c.fy);
-  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = pose.R;
-  size_t end = squares->size();
-  squares->resize(end + group.size);
-  double* sin2 = squares->data() + end;
-  SquaredParallax(matches.Directions(group), R.data(), group.size, sin2);
-  for (int k = 0; k < group.size; ++k) {
-    (*squares)[end] = pixels * pixels * sin2[k];
-    end += weights[group.begin + k] != 0 ? 1 : 0;
-  }
-  squares->resize(end);
-}
-
-double MedianParallaxPx(const GroupedMatches& matches, const MatchGroup& group,
-                        const std::vector<double>& weights, const Pose& pose) {
-  std::vector<double> squares;
-  AppendSquaredParallaxPx(matches, group, weights, pose, 1.0, &squares);
-  return squares.empty() ? 0.0 : std::sqrt(MedianInPlace(&squares));
-}
-
-}  // namespace
-
-Matrix6d ReliableInformation(const GroupedMatches& matches,
-                             const std::vector<double>& match_weights, const Pose& pose,
-                             double noise_px) {
-  constexpr double kShortBaseline = 0.1;  // of the longest
-  constexpr double kSigmas = 5.0;
-  constexpr double kParallaxNoise = 6.0;  // sigma
-  const double variance = noise_px * noise_px;
-  const MotionBasis basis = FullBasis(pose, true);
-  std::vector<double> weights;
-  EpipoleWeights(matches, pose, noise_px, &weights);
-  for (size_t k = 0; k < weights.size(); ++k) weights[k] *= match_weights[k];
-  std::vector<double> baseline;
-  for (const MatchGroup& group : matches.groups()) {
-    const RigCamera& c1 = matches.rig().cameras[group.camera1];
-    const RigCamera& c2 = matches.rig().cameras[group.camera2];
-    baseline.push_back((pose.R * c1.s + pose.t - c2.s).norm());
-  }
-  const double longest =
-      baseline.empty() ? 0.0 : *std::max_element(baseline.begin(), baseline.end());
-  const auto information_of = [&](size_t g) {
-    const MatchGroup& group = matches.groups()[g];
-    return Matrix6d(GroupInformation(matches, group, pose, weights.data() + group.begin) /
-                    variance);
-  };
-  Matrix6d sum = Matrix6d::Zero();
-  std::vector<size_t> in_question;
-  for (size_t g = 0; g < baseline.size(); ++g) {
-    if (baseline[g] < kShortBaseline * longest &&
-        MedianParallaxPx(matches, matches.groups()[g], match_weights, pose) <
-            kParallaxNoise * noise_px) {
-      in_question.push_back(g);
-    } else {
-      sum += information_of(g);
-    }
-  }
-  // Each is added only if those that count already tell its baseline from zero. It is never added
-  // and subtracted again: its information grows as 1 / baseline^2, so near zero the rounding of the
-  // difference would be larger than the rest.
-  std::stable_sort(in_question.begin(), in_question.end(),
-                   [&](size_t a, size_t b) { return baseline[a] > baseline[b]; });
-  for (const size_t g : in_question) {
-    Matrix6d others;
-    if (!CovarianceOfBasis(sum, basis, &others)) break;
-    if (baseline[g] < kSigmas * std::sqrt(others.block<3, 3>(3, 3).trace())) break;
-    sum += information_of(g);
-  }
-  return sum;
 }
 
 bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis,
@@ -257,6 +168,28 @@ std::string WeakestDirection(const Matrix6d& covariance, const Eigen::Vector3d& 
                 RadToDeg(turn.norm()), axis(turn).c_str(), shift.norm(), axis(shift).c_str());
   return text;
 }
+
+namespace {
+
+// Appends the squares of `factor` times the parallax in pixels, of the group's matches in the mask.
+void AppendSquaredParallaxPx(const GroupedMatches& matches, const MatchGroup& group,
+                             const std::vector<char>& mask, const Pose& pose, double factor,
+                             std::vector<double>* squares) {
+  const PinholeCamera& c = matches.rig().cameras[group.camera2].intrinsics;
+  const double pixels = factor * 0.5 * (c.fx + c.fy);
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = pose.R;
+  size_t end = squares->size();
+  squares->resize(end + group.size);
+  double* sin2 = squares->data() + end;
+  SquaredParallax(matches.Directions(group), R.data(), group.size, sin2);
+  for (int k = 0; k < group.size; ++k) {
+    (*squares)[end] = pixels * pixels * sin2[k];
+    end += mask[group.begin + k] != 0 ? 1 : 0;
+  }
+  squares->resize(end);
+}
+
+}  // namespace
 
 double ParallaxPercentilePx(const GroupedMatches& matches, const std::vector<char>& mask,
                             const Pose& pose) {

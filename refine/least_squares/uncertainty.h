@@ -50,14 +50,6 @@ inline constexpr double kEpipoleSigmas = 20.0;
 void EpipoleWeights(const GroupedMatches& matches, const Pose& pose, double noise_px,
                     std::vector<double>* weights);
 
-// The information from which the covariance is computed: SampsonInformation() over the variance
-// noise_px^2, without false information. The Sampson error is not linear within the noise near an
-// epipole and for a very short baseline. So matches near an epipole have their EpipoleWeights. A
-// camera pair is left out if the other matches cannot tell its baseline R s_i + t - s_j from zero;
-// the others are those of longer baselines or of more parallax.
-Matrix6d ReliableInformation(const GroupedMatches& matches, const std::vector<double>& weights,
-                             const Pose& pose, double noise_px);
-
 // The covariance B (B' information B)^-1 B' for the free directions B = `basis` (6 x k). False, and
 // `covariance` unchanged, if the information of the free directions is singular.
 bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis, Matrix6d* covariance);

@@ -9,10 +9,10 @@
 namespace rigel {
 
 bool ExceedsChance(const GroupedMatches& matches, const Pose& pose, int num_inliers,
-                   double threshold_px, double num_tries) {
+                   int num_matches, double threshold_px, double num_tries) {
   constexpr int kFree = 6;
   constexpr double kFalseAlarms = 1e-3;
-  const int n = matches.size() - kFree;
+  const int n = num_matches - kFree;
   const int k = num_inliers - kFree;
   if (n <= 0 || k <= 0) return false;
   double q = 0.0;

@@ -15,9 +15,10 @@ namespace rigel {
 // line: the share of the image that this band takes. Matches of another motion lie near the line
 // more often. So q is at least what the matches between twice and five times the threshold suggest.
 // Six matches are not counted, since any six can be fitted. `num_tries` is the number of motions
-// that were tried.
+// that were tried. `num_inliers` and `num_matches` are those of different image points
+// (shared_pixels.h).
 bool ExceedsChance(const GroupedMatches& matches, const Pose& pose, int num_inliers,
-                   double threshold_px, double num_tries);
+                   int num_matches, double threshold_px, double num_tries);
 
 }  // namespace rigel
 

@@ -100,9 +100,9 @@ bool FramePairSolver::OptimizeOn(const GroupedMatches& matches, SmallEngine* eng
                                  double threshold, Model* model) const {
   LeastSquaresOptions options;
   options.loss_scale = threshold;
-  options.inverse_scale = ScaleIsNoise(*model);
+  options.limits_length = ScaleIsNoise(*model);
   matches.SelectInliers(*model, threshold, &squared_errors_, &inliers_);
-  return engine->Minimize(options, inliers_, model);
+  return engine->Minimize(options, inliers_, PriorResiduals(), 1.0, model);
 }
 
 }  // namespace rigel

@@ -44,12 +44,6 @@ class Histogram {
     return near;
   }
   int Total() const { return total_; }
-  // The 90th percentile.
-  double High() const {
-    int bin = kBins - 1;
-    for (int above = counts_[bin]; bin > 0 && above < 0.1 * total_;) above += counts_[--bin];
-    return std::exp2(0.5 * (bin - (kBins - 2) + 1));
-  }
 
  private:
   std::array<int, kBins> counts_{};
@@ -66,159 +60,115 @@ Numbers OtherInliers(const Histogram& in_gate, int below, int above, double prio
   return near;
 }
 
-// Intra-camera and inter-camera matches are judged apart, since their parallax differs in size.
-enum Kind { kIntra, kInter };
-
-// Matches in front of the cameras, by their error.
-struct Placed {
-  std::vector<int> in_gate, in_band;
+// One match whose leverage counts.
+struct Judged {
+  int match;
+  int group;
+  double leverage;
 };
 
-// Clears `selected` for likely outliers by parallax. `sin2` is the squared sine of the parallax.
-void JudgeByParallax(const Placed& placed, const std::vector<double>& sin2,
-                     std::vector<char>* selected) {
-  // Expected number of inliers near a parallax at which there is no other.
-  constexpr double kPrior = 0.1;
-  constexpr int kReach = 4;
-  if (placed.in_gate.empty() || placed.in_band.empty()) return;
-  Histogram in_gate, in_band;
-  for (const int k : placed.in_gate) in_gate.Add(Histogram::Bin(sin2[k]));
-  for (const int k : placed.in_band) in_band.Add(Histogram::Bin(sin2[k]));
-  const double high2 = in_gate.High();
-  // Only one bin above: inliers of larger parallax are few.
-  const Numbers inliers = OtherInliers(in_gate, kReach, 1, kPrior);
-  const Numbers band = in_band.Near(kReach, kReach);
-  for (const int k : placed.in_gate) {
-    const int bin = Histogram::Bin(sin2[k]);
-    const double outliers = band[bin] / (kBandEnd - kBandBegin);
-    const double limit = std::clamp(kMaxOutlierProbability * high2 / std::max(sin2[k], 1e-300),
-                                    kMinOutlierProbability, kMaxOutlierProbability);
-    if (outliers > limit * (outliers + inliers[bin])) (*selected)[k] = 0;
-  }
+// Bins of h / (1 - h), the variance of the prediction by the other matches, scaled to the range of
+// the histogram, which ends at 1.
+int BinOf(double h) {
+  constexpr double kMaxFactor = 1024.0;
+  return Histogram::Bin(h / (1.0 - h) / kMaxFactor);
 }
 
-// Clears `selected` for likely outliers by leverage.
-void JudgeByLeverage(const GroupedMatches& matches, const Pose& pose, double gate_px,
-                     const InlierFit& fit, const std::vector<double>& squared_errors,
-                     const Placed (&placed)[2], int num_outliers, std::vector<char>* selected) {
-  constexpr double kPrior = 0.02;
-  constexpr int kInlierReach = 4;
-  constexpr int kReach = 8;
-  // A smaller leverage does no harm. With few matches all leverages are large and none stands out.
-  // The mean leverage is parameters over inliers, and twice the mean counts as high (Hoaglin and
-  // Welsch 1978). Matches with at least an eighth of that limit enter the counts.
-  constexpr double kHarmless = 0.1;
-  constexpr double kMeans = 2.0;
-  const int num_members = static_cast<int>(std::count(fit.members.begin(), fit.members.end(), 1));
-  const double min_leverage = std::max(kHarmless, kMeans * 6.0 / std::max(num_members, 1));
+// Leverages of all matches. Of a match that was not fitted: what it would have if it were.
+std::vector<double> LeveragesOf(const GroupedMatches& matches, const Pose& pose,
+                                const InlierFit& fit) {
   constexpr double kMaxLeverage = 0.9999;
-  // Share of all outliers that is expected in the band.
-  constexpr double kShareInBand = 0.1;
-  // Scales h / (1 - h) to the range of the histogram, which ends at 1.
-  constexpr double kMaxFactor = 1024.0;
-  // Errors of real matches have longer tails than normal ones: from this squared deviation on the
-  // density falls as 1 / deviations^2.
-  constexpr double kTail2 = 9.0;
-  const double variance = fit.noise_px * fit.noise_px;
   std::vector<double> leverages(matches.size());
-  const Matrix6d of_unit_noise = fit.covariance / variance;
   for (const MatchGroup& group : matches.groups()) {
-    Leverages(matches, group, pose, fit.weights.data() + group.begin, of_unit_noise,
+    Leverages(matches, group, pose, fit.weights.data() + group.begin, fit.covariance,
               leverages.data() + group.begin);
   }
-  const auto leverage_of = [&](int k) {
+  for (size_t k = 0; k < leverages.size(); ++k) {
     const double h = leverages[k];
-    return std::min(fit.members[k] ? h : h / (1.0 + h), kMaxLeverage);
-  };
-  std::vector<int> judged;
-  Histogram in_gate, in_band;
-  // Bins of h / (1 - h), the variance of the prediction by the other matches.
-  const auto bin_of = [](double h) { return Histogram::Bin(h / (1.0 - h) / kMaxFactor); };
-  for (const Placed& matches_of_kind : placed) {
-    for (const int k : matches_of_kind.in_gate) {
-      const double h = leverage_of(k);
-      if (h < min_leverage / 8.0) continue;
-      in_gate.Add(bin_of(h));
-      if (h >= min_leverage) judged.push_back(k);
-    }
+    leverages[k] = std::min(fit.members[k] ? h : h / (1.0 + h), kMaxLeverage);
   }
-  if (judged.empty()) return;
-  for (const Placed& matches_of_kind : placed) {
-    for (const int k : matches_of_kind.in_band) in_band.Add(bin_of(leverage_of(k)));
-  }
-  const Numbers inliers = OtherInliers(in_gate, kInlierReach, kInlierReach, kPrior);
-  const Numbers band = in_band.Near(kReach, kReach);
-  const double prior = kShareInBand * num_outliers * 3.0 / (2 * kReach + 1);
-  for (const int k : judged) {
-    const double h = leverage_of(k);
-    // Squared residual over variance. The error of the prediction by the other matches is
-    // r / (1 - h) for the residual r of least squares. Its variance is sigma^2 / (1 - h).
-    const double s = fit.weights[k] * fit.weights[k] * squared_errors[k] / variance;
-    const double deviations2 = fit.members[k] && fit.is_minimum ? s / (1.0 - h) : s * (1.0 - h);
-    // Densities of the deviation: outliers are uniform in pixels on both sides, inliers normal.
-    const int bin = bin_of(h);
-    const double per_px = (band[bin] + prior) / (2.0 * (kBandEnd - kBandBegin) * gate_px);
-    const double as_outlier = per_px * fit.noise_px / (fit.weights[k] * std::sqrt(1.0 - h));
-    constexpr double kInvSqrt2Pi = 0.3989422804014327;
-    const double normal = kInvSqrt2Pi * std::exp(-0.5 * std::min(deviations2, kTail2));
-    const double as_inlier = inliers[bin] * normal * std::min(1.0, kTail2 / deviations2);
-    if (as_outlier > as_inlier) (*selected)[k] = 0;
-  }
+  return leverages;
 }
 
 }  // namespace
 
-int SelectPlausibleInliers(const GroupedMatches& matches, const Pose& pose, double gate_px,
-                           const InlierFitFunction& fit, std::vector<double>* squared_errors,
-                           std::vector<char>* inliers) {
-  const int n = matches.size();
-  const double gate2 = gate_px * gate_px;
-  constexpr double kBegin2 = kBandBegin * kBandBegin;
-  squared_errors->resize(n);
-  inliers->resize(n);
-  Placed placed[2];
-  for (Placed& kind : placed) {
-    // One entry more, so that the loop below can write each match and overwrite those not kept.
-    kind.in_gate.resize(n + 1);
-    kind.in_band.resize(n + 1);
-  }
-  int in_gate[2] = {}, in_band[2] = {}, num_outliers = 0;
-  for (const MatchGroup& group : matches.groups()) {
-    const Kind kind = group.camera1 == group.camera2 ? kIntra : kInter;
-    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = matches.Fundamental(group, pose);
-    double* errors = squared_errors->data() + group.begin;
-    char* selected = inliers->data() + group.begin;
-    SelectInFront(matches.Pixels(group), matches.Directions(group), F.data(),
-                  matches.MotionOf(group, pose, gate_px), kBandEnd * kBandEnd * gate2, errors,
-                  selected);
-    for (int k = 0; k < group.size; ++k) {
-      const int fits = (selected[k] != 0) & (errors[k] < gate2);
-      const int outlier = (selected[k] == 0) | (errors[k] >= kBegin2 * gate2);
-      placed[kind].in_gate[in_gate[kind]] = group.begin + k;
-      in_gate[kind] += fits;
-      placed[kind].in_band[in_band[kind]] = group.begin + k;
-      in_band[kind] += outlier & selected[k];
-      num_outliers += outlier;
-      selected[k] = static_cast<char>(fits);
+int SelectWithinGate(const GroupedMatches& matches, const MatchErrors& errors,
+                     const NoiseModel& noise, std::vector<char>* inliers) {
+  inliers->resize(matches.size());
+  int count = 0;
+  for (size_t g = 0; g < matches.groups().size(); ++g) {
+    const MatchGroup& group = matches.groups()[g];
+    const double gate2 = noise.gate_of[g] * noise.gate_of[g];
+    for (int k = group.begin; k < group.begin + group.size; ++k) {
+      (*inliers)[k] = static_cast<char>((errors.in_front[k] != 0) & (errors.squared[k] < gate2));
+      count += (*inliers)[k];
     }
   }
-  if (num_outliers == 0) return in_gate[kIntra] + in_gate[kInter];
-  std::vector<double> sin2(n);
-  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = pose.R;
-  for (const MatchGroup& group : matches.groups()) {
-    SquaredParallax(matches.Directions(group), R.data(), group.size, sin2.data() + group.begin);
+  return count;
+}
+
+int ExcludeImplausible(const GroupedMatches& matches, const Pose& pose, const MatchErrors& errors,
+                       const NoiseModel& noise, const InlierFit& fit, std::vector<char>* inliers) {
+  constexpr double kPrior = 0.02;
+  constexpr int kInlierReach = 4;
+  constexpr int kReach = 8;
+  // Matches with at least this part of the mean leverage enter the counts.
+  constexpr double kCounted = 0.25;
+  // Share of all outliers that is expected in the band.
+  constexpr double kShareInBand = 0.1;
+  // Errors of real matches have longer tails than normal ones: from this squared deviation on the
+  // density falls as 1 / deviations^2.
+  constexpr double kTail2 = 9.0;
+  // Twice the mean leverage counts as high (Hoaglin and Welsch 1978).
+  constexpr double kMeans = 2.0;
+  constexpr int kParameters = 6;
+  const int num_inliers = static_cast<int>(std::count(inliers->begin(), inliers->end(), 1));
+  const int num_outliers = matches.size() - num_inliers;
+  if (num_outliers == 0) return num_inliers;
+  const int num_members = static_cast<int>(std::count(fit.members.begin(), fit.members.end(), 1));
+  const double mean_leverage = kParameters / static_cast<double>(std::max(num_members, 1));
+  const std::vector<double> leverages = LeveragesOf(matches, pose, fit);
+  std::vector<Judged> judged;
+  Histogram in_gate, in_band;
+  for (size_t g = 0; g < matches.groups().size(); ++g) {
+    const MatchGroup& group = matches.groups()[g];
+    const double begin = kBandBegin * noise.gate_of[g];
+    const double end = kBandEnd * noise.gate_of[g];
+    for (int k = group.begin; k < group.begin + group.size; ++k) {
+      const double h = leverages[k];
+      const double e2 = errors.squared[k];
+      if ((*inliers)[k]) {
+        if (h < kCounted * mean_leverage) continue;
+        in_gate.Add(BinOf(h));
+        if (h >= kMeans * mean_leverage) judged.push_back({k, static_cast<int>(g), h});
+      } else if (errors.in_front[k] && e2 >= begin * begin && e2 < end * end) {
+        in_band.Add(BinOf(h));
+      }
+    }
   }
-  for (const Kind kind : {kIntra, kInter}) {
-    placed[kind].in_gate.resize(in_gate[kind]);
-    placed[kind].in_band.resize(in_band[kind]);
-    JudgeByParallax(placed[kind], sin2, inliers);
+  const Numbers near_inliers = OtherInliers(in_gate, kInlierReach, kInlierReach, kPrior);
+  const Numbers band = in_band.Near(kReach, kReach);
+  const double prior = kShareInBand * num_outliers * 3.0 / (2 * kReach + 1);
+  constexpr double kOdds = kMaxOutlierProbability / (1.0 - kMaxOutlierProbability);
+  int left = num_inliers;
+  for (const auto& [k, g, h] : judged) {
+    // Squared residual over variance. The error of the prediction by the other matches is
+    // r / (1 - h) for the residual r of least squares. Its variance is sigma^2 / (1 - h).
+    const double s = fit.weights[k] * fit.weights[k] * errors.squared[k];
+    const double deviations2 = fit.members[k] ? s / (1.0 - h) : s * (1.0 - h);
+    // Densities of the deviation: outliers are uniform in pixels on both sides, inliers normal.
+    const int bin = BinOf(h);
+    const double per_px = (band[bin] + prior) / (2.0 * (kBandEnd - kBandBegin) * noise.gate_of[g]);
+    const double as_outlier = per_px / (fit.weights[k] * std::sqrt(1.0 - h));
+    constexpr double kInvSqrt2Pi = 0.3989422804014327;
+    const double normal = kInvSqrt2Pi * std::exp(-0.5 * std::min(deviations2, kTail2));
+    const double as_inlier = near_inliers[bin] * normal * std::min(1.0, kTail2 / deviations2);
+    if (as_outlier > kOdds * as_inlier) {
+      (*inliers)[k] = 0;
+      --left;
+    }
   }
-  InlierFit at_pose;
-  if (fit != nullptr && fit(&at_pose)) {
-    JudgeByLeverage(matches, pose, gate_px, at_pose, *squared_errors, placed, num_outliers,
-                    inliers);
-  }
-  return static_cast<int>(std::count(inliers->begin(), inliers->end(), 1));
+  return left;
 }
 
 }  // namespace rigel

@@ -46,7 +46,8 @@ double ShortestLength(const GroupedMatches& matches, const Eigen::Matrix3d& R) {
 
 }  // namespace
 
-bool SearchScale(const GroupedMatches& matches, double threshold_px, double noise_px, Pose* pose) {
+bool SearchScale(const GroupedMatches& matches, double threshold_px, double noise_px,
+                 const PriorResiduals& prior, const std::vector<double>& more_lengths, Pose* pose) {
   const double norm = pose->t.norm();
   double length = ShortestLength(matches, pose->R);
   if (!(norm > 0) || !(length > 0)) return false;
@@ -69,19 +70,25 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
     if (RelativeScaleSigma(information, at) > kHopeless) break;
     lengths.push_back(length);
   }
+  lengths.insert(lengths.end(), more_lengths.begin(), more_lengths.end());
   lengths.push_back(std::max(kFar * ShortestLength(matches, pose->R), kStep * length));
 
+  // Of all matches and of the prior, pixels^2.
   const auto score_of = [&](const GroupedMatches& scored, const Pose& motion) {
-    return scored.ScoreInFront(motion, threshold_px, std::numeric_limits<double>::infinity(),
-                               nullptr);
+    PriorResiduals::Residuals r;
+    prior.Evaluate(motion, &r, nullptr);
+    const double score =
+        scored.ScoreInFront(motion, threshold_px, std::numeric_limits<double>::infinity(), nullptr);
+    return score * matches.size() / scored.size() + noise_px * noise_px * r.squaredNorm();
   };
   const auto optimize = [&](const GroupedMatches& with, SmallEngine* solver, double threshold,
                             Pose* motion) {
     LeastSquaresOptions options;
-    options.inverse_scale = true;
+    options.limits_length = true;
     options.loss_scale = threshold;
     with.SelectInliers(*motion, threshold, &errors, &mask);
-    return solver->Minimize(options, mask, motion);
+    const double unit = noise_px * std::sqrt(with.size() / static_cast<double>(matches.size()));
+    return solver->Minimize(options, mask, prior, unit, motion);
   };
 
   // From each length roughly, then from the best few and from the longest to the minimum.
@@ -116,25 +123,17 @@ bool SearchScale(const GroupedMatches& matches, double threshold_px, double nois
   std::stable_sort(candidates.begin(), candidates.end(), by_score);
   size_t kept = 0;
   while (kept < std::min(kPolished, candidates.size()) &&
-         candidates[kept].score <= candidates[0].score + kInReach * outlier * subset.size()) {
+         candidates[kept].score <= candidates[0].score + kInReach * outlier * matches.size()) {
     ++kept;
   }
   candidates.resize(kept);
   for (Candidate& candidate : candidates) polish(&candidate);
   candidates.push_back(longest);
-  // With the start as one of the candidates; the longest first.
   candidates.push_back({norm, start_score, *pose});
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& x, const Candidate& y) { return x.length > y.length; });
-  double best = std::numeric_limits<double>::infinity();
-  Pose found = *pose;
-  for (const Candidate& candidate : candidates) {
-    if (!(candidate.score < best - outlier)) continue;
-    best = candidate.score;
-    found = candidate.motion;
-  }
+  std::stable_sort(candidates.begin(), candidates.end(), by_score);
+  const Pose found = candidates[0].motion;
   // The best of the subset must not be worse for all matches.
-  if (found.t == pose->t || !(score_of(matches, found) < score_of(matches, *pose) + outlier)) {
+  if (found.t == pose->t || !(score_of(matches, found) < score_of(matches, *pose))) {
     return false;
   }
   *pose = found;

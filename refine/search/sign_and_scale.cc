@@ -79,8 +79,10 @@ void ResolveSignAndScale(const GroupedMatches& matches, double threshold_px, Pos
   const Eigen::Vector3d mean =
       SignedMeanBaseline(matches, threshold_px, *pose) * std::max(norm, arm);
   constexpr double kSameDirection = 0.999;  // 2.6 deg
+  // Or there is no mean, as nothing is decided.
   const bool mean_is_start =
-      norm >= arm && std::abs(mean.dot(start)) > kSameDirection * norm * norm;
+      !(mean.norm() > 0) ||
+      (norm >= arm && std::abs(mean.dot(start)) > kSameDirection * norm * norm);
   double best = std::numeric_limits<double>::infinity();
   Eigen::Vector3d best_t = start;
   double factor = 1.0;

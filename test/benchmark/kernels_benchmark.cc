@@ -279,7 +279,7 @@ void BM_SmallEngine(benchmark::State& state) {
     pose.R = ExpSO3({0.01, -0.01, 0.01}) * pose.R;
     LeastSquaresOptions options;
     options.loss = LossKind::kCauchy;
-    benchmark::DoNotOptimize(engine.Minimize(options, mask, &pose));
+    benchmark::DoNotOptimize(engine.Minimize(options, mask, PriorResiduals(), 1.0, &pose));
   }
 }
 BENCHMARK(BM_SmallEngine)->Unit(benchmark::kMicrosecond);

@@ -162,7 +162,7 @@ Options MakeOptions(Bytes* bytes) {
   if (bytes->Chance(60)) refine.threshold_px = bytes->Double(0, 5);
   if (bytes->Chance(60)) refine.max_rounds = bytes->Chance(230) ? bytes->Choice(8) : -1;
   if (bytes->Chance(60)) refine.max_num_iterations = bytes->Chance(230) ? bytes->Byte() : -1;
-  refine.scale = static_cast<rigel::ScaleMode>(kind(3));
+  refine.hold_distance = kind(3) == 0;
   if (bytes->Chance(80)) refine.noise_px = bytes->Double(0, 2);
   options.refine = refine;
   return {options, refine};
@@ -181,6 +181,8 @@ void AddLaterOptions(Bytes* bytes, Options* options, rigel::MotionPrior* prior) 
   options->estimate.refine.time_limit = options->refine.time_limit;
   options->estimate.refine.cancel = options->refine.cancel;
   if (bytes->Chance(100)) prior->forward = Direction(bytes);
+  if (bytes->Chance(40)) options->refine.typical_length = bytes->Double(0, 1e3);
+  options->estimate.refine.typical_length = options->refine.typical_length;
 }
 
 void RequireSound(const rigel::RefineSummary& summary, size_t num_matches) {

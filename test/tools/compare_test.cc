@@ -350,8 +350,7 @@ TEST_F(CompareTest, DegenerateFilesCountAsFailures) {
   const Outcome run =
       RunTool("compare", {"--matches=" + matches, "--solvers=4pt-axis", "--json=-"});
   EXPECT_EXIT_CODE(run, 0);
-  EXPECT_THAT(Lines(run.err),
-              UnorderedElementsAre(HasSubstr("(2 files alike"), HasSubstr("same.matches: ")));
+  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("(3 files alike but for the numbers)")));
   const Json entry = ParseReport(run.out)["results"][0];
   EXPECT_EQ(entry["pairs"], 6);
   EXPECT_EQ(entry["failures"], 3);

@@ -73,7 +73,7 @@ TEST_F(EstimateG2oTest, FileAndTableGoTogether) {
   const Outcome run = RunTool("estimate", {"--matches=" + matches, "--g2o=" + Path("graph.g2o")});
   ASSERT_EXIT_CODE(run, 0);
   EXPECT_THAT(run.out, HasSubstr("-----"));
-  // Without matches between cameras |t| is held and has no information.
+  // Without matches between cameras nothing says |t|: it has no information.
   const G2oGraph graph = ParseG2o(ReadText(Path("graph.g2o")));
   ASSERT_THAT(graph.edges, SizeIs(2));
   EXPECT_THAT(graph.comments, ElementsAre(HasSubstr("|t| is not determined in 2 of 2 edges")));

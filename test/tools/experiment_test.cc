@@ -253,7 +253,8 @@ TEST_F(ExperimentTest, KittiMotionsHasARowADrive) {
     EXPECT_TRUE(row.contains("time_ms"));
   }
   EXPECT_THAT(drives, testing::ElementsAre("03", "04"));
-  EXPECT_THAT(ReadText(Path("a/claims.md")), HasSubstr("`kitti-motions`: every 4th motion, seed 1"));
+  EXPECT_THAT(ReadText(Path("a/claims.md")),
+              HasSubstr("`kitti-motions`: every 4th motion, seed 1"));
   EXPECT_THAT(ReadText(Path("a/claims.md")), HasSubstr("4pt-axis-approx is the fastest"));
   EXPECT_THAT(ReadText(Path("a/claims.md")), Not(HasSubstr("not measured")));
 }

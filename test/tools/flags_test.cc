@@ -17,7 +17,7 @@ using testing::StartsWith;
 // DESIGN.md, section 10, and --loss.
 const Args kEstimationFlags = {"confidence",
                                "down",
-                               "estimate_noise",
+                               "typical_length",
                                "fix_translation_norm",
                                "forward",
                                "loss",
@@ -53,9 +53,10 @@ std::map<std::string, Args> FlagsOfTools() {
        {"euroc_root", "features", "first", "kitti_root", "last", "max_features", "output", "ratio",
         "resume", "sequence", "stride", "sync_tolerance_ms", "threads"}},
       {"simulate",
-       {"every", "inter_share", "match_scores", "motion", "moving_share", "noise_px", "num_cameras",
-        "num_matches", "outlier_share", "output", "pairs", "poses", "ring", "rotation_axis",
-        "rotation_deg", "seed", "threads"}}};
+       {"camera_noise_px", "distance_m",   "every",       "ground_m", "inter_share", "match_scores",
+        "motion",          "moving_share", "noise_model", "noise_px", "num_cameras", "num_matches",
+        "outlier_share",   "output",       "pairs",       "poses",    "rig",         "ring",
+        "rotation_axis",   "rotation_deg", "scene",       "seed",     "threads"}}};
 }
 
 // A run that would succeed but for what is added to it and that the files are not there, nor can be
@@ -186,7 +187,7 @@ TEST(Flags, ValueOutOfRangeIsAUsageErrorBeforeAnyFileIsRead) {
     // What another flag leaves without effect.
     ExpectUsageError(tool, {"--refine=bundle", "--residual=angular"}, "reprojection errors");
     for (const char* flag :
-         {"--fix_translation_norm", "--use_prior_in_refine", "--estimate_noise"}) {
+         {"--fix_translation_norm", "--use_prior_in_refine", "--typical_length=2"}) {
       ExpectUsageError(tool, {"--refine=none", flag},
                        "have no effect without a refinement (--refine=none)");
     }

@@ -9,28 +9,28 @@ namespace rigel {
 namespace {
 
 TEST(ImageNoise, NamesOfModels) {
-  NoiseModel model = NoiseModel::kGaussian;
-  EXPECT_TRUE(ParseNoiseModel("mixture", &model));
-  EXPECT_EQ(model, NoiseModel::kMixture);
-  EXPECT_TRUE(ParseNoiseModel("laplace", &model));
-  EXPECT_EQ(model, NoiseModel::kLaplace);
-  EXPECT_TRUE(ParseNoiseModel("t3", &model));
-  EXPECT_EQ(model, NoiseModel::kStudent3);
-  EXPECT_TRUE(ParseNoiseModel("gaussian", &model));
-  EXPECT_EQ(model, NoiseModel::kGaussian);
-  EXPECT_FALSE(ParseNoiseModel("t4", &model));
+  NoiseShape model = NoiseShape::kGaussian;
+  EXPECT_TRUE(ParseNoiseShape("mixture", &model));
+  EXPECT_EQ(model, NoiseShape::kMixture);
+  EXPECT_TRUE(ParseNoiseShape("laplace", &model));
+  EXPECT_EQ(model, NoiseShape::kLaplace);
+  EXPECT_TRUE(ParseNoiseShape("t3", &model));
+  EXPECT_EQ(model, NoiseShape::kStudent3);
+  EXPECT_TRUE(ParseNoiseShape("gaussian", &model));
+  EXPECT_EQ(model, NoiseShape::kGaussian);
+  EXPECT_FALSE(ParseNoiseShape("t4", &model));
 }
 
 TEST(ImageNoise, DeviationAndShape) {
   // The share of a Gaussian within 0.5 sigma, of 80 percent of 0.6 sigma and 20 of 3 sigma, of
   // Laplace's 1 - exp(-sqrt(2) x), and of Student's t with three degrees of freedom at x sqrt(3).
   const struct {
-    NoiseModel model;
+    NoiseShape model;
     double deviation, share;
-  } cases[] = {{NoiseModel::kGaussian, 1.0, 0.3829},
-               {NoiseModel::kMixture, std::sqrt(0.8 * 0.36 + 0.2 * 9.0), 0.5027},
-               {NoiseModel::kLaplace, 1.0, 0.5069},
-               {NoiseModel::kStudent3, 1.0, 0.5498}};
+  } cases[] = {{NoiseShape::kGaussian, 1.0, 0.3829},
+               {NoiseShape::kMixture, std::sqrt(0.8 * 0.36 + 0.2 * 9.0), 0.5027},
+               {NoiseShape::kLaplace, 1.0, 0.5069},
+               {NoiseShape::kStudent3, 1.0, 0.5498}};
   for (const auto& c : cases) {
     constexpr int kDraws = 200000;
     constexpr double kSigma = 2.0;
@@ -48,7 +48,7 @@ TEST(ImageNoise, DeviationAndShape) {
     EXPECT_NEAR(sum / kDraws, 0.0, 0.02);
     EXPECT_NEAR(StandardDeviation(c.model), c.deviation, 1e-12);
     // The fourth moment of t3 is infinite: its sample deviation converges slowly.
-    const double tolerance = c.model == NoiseModel::kStudent3 ? 0.1 : 0.02;
+    const double tolerance = c.model == NoiseShape::kStudent3 ? 0.1 : 0.02;
     EXPECT_NEAR(std::sqrt(squares / kDraws) / kSigma, c.deviation, tolerance);
     EXPECT_NEAR(near / static_cast<double>(kDraws), c.share, 0.005);
   }

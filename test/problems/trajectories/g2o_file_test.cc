@@ -56,7 +56,7 @@ Drive RandomDrive(int size) {
     for (int c = 0; c < 6; ++c) root.col(c) << random.NormalVector3(), random.NormalVector3();
     e.refine.termination = Termination::kConverged;
     e.refine.covariance = 1e-4 * root * root.transpose();
-    e.refine.scale_free = true;
+    e.refine.length_sigma = 0.01;
     e.refine.rotation_observable = true;
     e.refine.translation_observable = true;
     e.refine.scale_observable = true;
@@ -157,21 +157,24 @@ Eigen::Matrix<double, 5, 5> DirectionInformation(const G2oGraph::Edge& edge) {
 
 TEST(G2oFile, EdgesWithoutScaleHaveAStatedOrUnitLength) {
   Drive drive = RandomDrive(5);
+  // The relative standard deviation of the length: independent of the rest, for simplicity.
   const auto drop_scale = [&](int k, double length, double sigma) {
     MotionEstimate& e = drive.estimates[k];
     const Matrix6d information = PseudoInformation(*e.refine.covariance);
     e.pose.t *= length / e.pose.t.norm();
     Matrix6d covariance;
     ASSERT_TRUE(CovarianceOfBasis(information, FullBasis(e.pose, false), &covariance));
-    e.refine.covariance = covariance;
-    e.refine.scale_free = false;
+    Vector6d along = Vector6d::Zero();
+    along.tail<3>() = sigma * e.pose.t;
+    e.refine.covariance = covariance + along * along.transpose();
+    e.refine.length_sigma = sigma;
     e.refine.scale_observable = false;
-    e.refine.relative_scale_sigma = sigma;
+    e.refine.relative_scale_sigma = std::numeric_limits<double>::infinity();
   };
   drop_scale(0, 5.0, 0.3);  // roughly known
   drop_scale(1, 5.0, 0.6);
-  drop_scale(2, 1e4, std::numeric_limits<double>::infinity());
-  drop_scale(3, 1e4, std::numeric_limits<double>::infinity());
+  drop_scale(2, 100.0, 1.0);
+  drop_scale(3, 100.0, 1.0);
   drive.pairs[3].prior.distance = 2.5;
   const G2oGraph graph = drive.Graph();
   const double lengths[] = {5.0, 1.0, 1.0, 2.5, drive.estimates[4].pose.t.norm()};
@@ -182,7 +185,12 @@ TEST(G2oFile, EdgesWithoutScaleHaveAStatedOrUnitLength) {
     Eigen::Matrix<double, 6, 1> along = Eigen::Matrix<double, 6, 1>::Zero();
     along.tail<3>() = edge.measurement.Inverse().t;
     along = G2oJacobian(edge.measurement.Inverse()) * along;
-    EXPECT_LT((edge.information * along).norm(), 1e-13 * edge.information.norm());
+    if (k == 0) {
+      // As roughly as it is known.
+      EXPECT_NEAR(along.dot(edge.information * along), 1.0 / (0.3 * 0.3), 1e-6);
+    } else {
+      EXPECT_LT((edge.information * along).norm(), 1e-13 * edge.information.norm());
+    }
     // The rest is as it was at the length of the estimate.
     G2oGraph::Edge before;
     const BetweenFactor factor = G2oEdge(drive.estimates[k].pose, drive.estimates[k].refine);
@@ -203,8 +211,8 @@ TEST(G2oFile, AStandingPairHasAnEdge) {
     MotionEstimate& e = drive.estimates[1];
     const Eigen::Vector3d point(1.5, 0.0, 0.3);
     e.pose = MotionOfBody({ExpSO3({1e-4, 2e-4, 0}), {0, 0, 1e-6}}, point);
-    e.refine.fitted_point = point;
-    e.refine.translation_observable = e.refine.scale_observable = e.refine.scale_free = false;
+    e.refine.rig_center = point;
+    e.refine.translation_observable = e.refine.scale_observable = false;
     e.refine.parallax_px = 0.5;
     e.refine.parallax_limit_px = 1.0;
     e.refine.relative_scale_sigma = known ? 1e4 : std::numeric_limits<double>::infinity();

@@ -46,6 +46,7 @@ Drive RandomDrive(int size) {
     e.refine.termination = Termination::kConverged;
     e.refine.rotation_observable = e.refine.translation_observable = true;
     e.refine.scale_observable = true;
+    e.refine.length_sigma = 0.01;
     e.refine.parallax_px = 10.0;
     e.refine.parallax_limit_px = 1.0;
     pair.truth = e.pose;
@@ -139,13 +140,17 @@ TEST(Trajectory, StandingStillIsNoGapButAnUnknownMotionIs) {
 TEST(Trajectory, LengthIsTheEstimatesTheStatedOneOrAGap) {
   Drive drive = RandomDrive(3);
   drive.estimates[1].refine.scale_observable = false;
-  drive.estimates[1].refine.relative_scale_sigma = 0.4;
+  drive.estimates[1].refine.length_sigma = 0.4;
   const std::vector<Trajectory> rough = drive.Chain();
   ASSERT_THAT(rough, SizeIs(1));
   EXPECT_EQ(rough[0].num_stated_lengths, 0);
-  drive.estimates[1].refine.relative_scale_sigma = 0.6;
+  drive.estimates[1].refine.length_sigma = 0.6;
   EXPECT_THAT(drive.Chain(), SizeIs(2));
   EXPECT_THAT(drive.notes, ElementsAre(HasSubstr("length of translation not determined")));
+  // A |t| that was held counts, whatever is known of it.
+  drive.estimates[1].refine.length_held = true;
+  EXPECT_THAT(drive.Chain(), SizeIs(1));
+  drive.estimates[1].refine.length_held = false;
   drive.pairs[1].prior.distance = 2.5;
   for (const bool refined : {true, false}) {
     if (!refined) drive.has_inter[1] = 0;

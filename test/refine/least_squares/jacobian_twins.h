@@ -24,6 +24,7 @@
 #include "rigel/refine/least_squares/reprojection_cost.h"
 #include "rigel/test/core/random_vector.h"
 #include "rigel/test/refine/jet_geometry.h"
+#include "rigel/test/refine/least_squares/translation_forms.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -46,25 +47,20 @@ struct Form {
   int size;
 };
 inline constexpr Form kForms[] = {
-    {RotationForm::kFree, TranslationForm::kFree, "free, free", 6},
-    {RotationForm::kFree, TranslationForm::kSphere, "free, sphere", 5},
-    {RotationForm::kFree, TranslationForm::kInverseScale, "free, inverse scale", 6},
-    {RotationForm::kFree, TranslationForm::kPlane, "free, plane", 5},
-    {RotationForm::kFree, TranslationForm::kCircle, "free, circle", 4},
-    {RotationForm::kFree, TranslationForm::kDepths, "free, depths", 5},
-    {RotationForm::kFree, TranslationForm::kDepth, "free, depth", 4},
-    {RotationForm::kFree, TranslationForm::kPlanarDepths, "free, planar depths", 4},
-    {RotationForm::kFree, TranslationForm::kPlanarDepth, "free, planar depth", 3},
-    {RotationForm::kAngle, TranslationForm::kFree, "angle, free", 4},
-    {RotationForm::kAngle, TranslationForm::kSphere, "angle, sphere", 3},
-    {RotationForm::kAngle, TranslationForm::kInverseScale, "angle, inverse scale", 4},
-    {RotationForm::kAngle, TranslationForm::kPlane, "angle, plane", 3},
-    {RotationForm::kAngle, TranslationForm::kCircle, "angle, circle", 2},
-    {RotationForm::kAngle, TranslationForm::kDepths, "angle, depths", 3},
-    {RotationForm::kAngle, TranslationForm::kDepth, "angle, depth", 2},
-    {RotationForm::kAngle, TranslationForm::kPlanarDepths, "angle, planar depths", 2},
-    {RotationForm::kAngle, TranslationForm::kPlanarDepth, "angle, planar depth", 1},
+    {RotationForm::kFree, kFreeTranslation, "free, free", 6},
+    {RotationForm::kFree, kSphere, "free, sphere", 5},
+    {RotationForm::kFree, kPlane, "free, plane", 5},
+    {RotationForm::kFree, kCircle, "free, circle", 4},
+    {RotationForm::kFree, kDepths, "free, depths", 5},
+    {RotationForm::kFree, kPlanarDepths, "free, planar depths", 4},
+    {RotationForm::kAngle, kFreeTranslation, "angle, free", 4},
+    {RotationForm::kAngle, kSphere, "angle, sphere", 3},
+    {RotationForm::kAngle, kPlane, "angle, plane", 3},
+    {RotationForm::kAngle, kCircle, "angle, circle", 2},
+    {RotationForm::kAngle, kDepths, "angle, depths", 3},
+    {RotationForm::kAngle, kPlanarDepths, "angle, planar depths", 2},
 };
+inline constexpr int kNumForms = 12;
 
 // The power series of the matrix exponential with halving and squaring: no angle, no quotient,
 // nothing special at zero or at a half turn.
@@ -90,12 +86,13 @@ struct Start {
   Eigen::Vector3d n1, n2;  // the known direction in f1 and f2: R n1 = n2, n2 . t = 0
   Alignment alignment;
   RayPair reference;
+  LengthRange range;
 };
 
 inline MotionParameterization MakeChart(const Form& form, const Start& start) {
   MotionParameterization chart;
-  EXPECT_TRUE(
-      chart.Set(form.rotation, form.translation, start.pose, start.alignment, start.reference));
+  EXPECT_TRUE(chart.Set(form.rotation, form.translation, start.pose, start.alignment,
+                        start.reference, start.range));
   return chart;
 }
 
@@ -114,27 +111,19 @@ class ChartTwin {
       R0_ = Exp<double>(a * n) * M;
     }
     t0_ = start.pose.t;
-    switch (form.translation) {
-      case TranslationForm::kFree:
-        break;
-      case TranslationForm::kSphere:
-      case TranslationForm::kInverseScale:
-        tangent_ = TangentBasis(t0_.normalized());
-        break;
-      case TranslationForm::kPlane:
-        t0_ -= n * n.dot(t0_);
-        tangent_ = TangentBasis(n);
-        break;
-      case TranslationForm::kCircle:
-        t0_ = t0_.norm() * (t0_ - n * n.dot(t0_)).normalized();
-        break;
-      default:
-        SetDepths();
+    if (form.translation.depths) {
+      SetDepths();
+    } else if (form.translation.planar) {
+      t0_ -= n * n.dot(t0_);
+      if (form.translation.holds_length) t0_ *= start.pose.t.norm() / t0_.norm();
+    } else {
+      tangent_ = TangentBasis(t0_.normalized());
     }
   }
 
   template <class T>
   Motion<T> operator()(const T* x) const {
+    using std::exp;
     Motion<T> motion;
     const Vector3<T> n = start_.n2.cast<T>();
     if (form_.rotation == RotationForm::kFree) {
@@ -144,70 +133,59 @@ class ChartTwin {
       motion.R = Exp<T>(n * x[0]) * R0_.cast<T>();
       x += 1;
     }
-    const Vector3<T> t0 = t0_.cast<T>();
-    switch (form_.translation) {
-      case TranslationForm::kFree:
-        motion.t = t0 + Vector3<T>(x[0], x[1], x[2]);
-        break;
-      case TranslationForm::kSphere:
-      case TranslationForm::kInverseScale: {
-        // Turned towards the tangent by its length.
-        const Vector3<T> tangent = Along(x[0], x[1]);
-        const Vector3<T> direction = t0_.normalized().cast<T>();
-        motion.t = Exp<T>(direction.cross(tangent)) * t0;
-        if (form_.translation == TranslationForm::kInverseScale) {
-          T inverse = x[2] + T(1.0);
-          if (inverse < T(1e-3)) inverse = T(1e-3);
-          if (inverse > T(4.0)) inverse = T(4.0);
-          motion.t = (motion.t / inverse).eval();
-        }
-        break;
-      }
-      case TranslationForm::kPlane:
-        motion.t = t0 + Along(x[0], x[1]);
-        break;
-      case TranslationForm::kCircle:
-        motion.t = Exp<T>(n * x[0]) * t0;
-        break;
-      default: {
-        T d1 = T(distance_.x());
-        T d2 = T(distance_.y());
-        if (form_.translation == TranslationForm::kDepths) {
-          d1 += x[0];
-          d2 += x[1];
-        } else if (form_.translation == TranslationForm::kDepth) {
-          d2 += x[0];
-        } else if (form_.translation == TranslationForm::kDepthsOnSphere) {
-          // Along the level line of |t|.
-          d1 += x[0] * T(across_.y());
-          d2 -= x[0] * T(across_.x());
-        } else if (form_.translation == TranslationForm::kPlanarDepths) {
-          d1 += x[0] * T(along_line_.x());
-          d2 += x[0] * T(along_line_.y());
-        }
-        const Ray& ray1 = start_.reference.ray1;
-        const Ray& ray2 = start_.reference.ray2;
-        const Vector3<T> X1 = ray1.s.cast<T>() + ray1.x.cast<T>() * d1;
-        const Vector3<T> X2 = ray2.s.cast<T>() + ray2.x.cast<T>() * d2;
-        motion.t = X2 - motion.R * X1;
-        if (form_.translation == TranslationForm::kDepthsOnSphere ||
-            form_.translation == TranslationForm::kPlanarDepthsOnSphere) {
-          // |t + q v| = |t0|.
-          const Vector3<T> v =
-              ray2.x.cast<T>() * T(across_.y()) - motion.R * (ray1.x.cast<T>() * T(across_.x()));
-          const T b = motion.t.dot(v);
-          const T c = motion.t.squaredNorm() - T(t0_.squaredNorm());
-          motion.t += v * ((sqrt(b * b - v.squaredNorm() * c) - b) / v.squaredNorm());
-        }
-      }
+    if (form_.translation.depths) {
+      SetFromDepths(x, &motion);
+      return motion;
     }
+    const Vector3<T> t0 = t0_.cast<T>();
+    if (form_.translation.planar) {
+      motion.t = Exp<T>(n * x[0]) * t0;
+      x += 1;
+    } else {
+      // Turned towards the tangent by its length.
+      const Vector3<T> tangent =
+          tangent_.col(0).cast<T>() * x[0] + tangent_.col(1).cast<T>() * x[1];
+      const Vector3<T> direction = t0_.normalized().cast<T>();
+      motion.t = Exp<T>(direction.cross(tangent)) * t0;
+      x += 2;
+    }
+    if (form_.translation.holds_length) return motion;
+    T length = T(t0_.norm()) * exp(x[0]);
+    if (length < T(start_.range.min)) length = T(start_.range.min);
+    if (length > T(start_.range.max)) length = T(start_.range.max);
+    motion.t *= length / T(t0_.norm());
     return motion;
   }
 
  private:
   template <class T>
-  Vector3<T> Along(const T& a, const T& b) const {
-    return tangent_.col(0).cast<T>() * a + tangent_.col(1).cast<T>() * b;
+  void SetFromDepths(const T* x, Motion<T>* motion) const {
+    using std::sqrt;
+    T d1 = T(distance_.x());
+    T d2 = T(distance_.y());
+    if (form_.translation.planar && !form_.translation.holds_length) {
+      d1 += x[0] * T(along_line_.x());
+      d2 += x[0] * T(along_line_.y());
+    } else if (!form_.translation.planar && form_.translation.holds_length) {
+      // Along the level line of |t|.
+      d1 += x[0] * T(across_.y());
+      d2 -= x[0] * T(across_.x());
+    } else if (!form_.translation.planar) {
+      d1 += x[0];
+      d2 += x[1];
+    }
+    const Ray& ray1 = start_.reference.ray1;
+    const Ray& ray2 = start_.reference.ray2;
+    const Vector3<T> X1 = ray1.s.cast<T>() + ray1.x.cast<T>() * d1;
+    const Vector3<T> X2 = ray2.s.cast<T>() + ray2.x.cast<T>() * d2;
+    motion->t = X2 - motion->R * X1;
+    if (!form_.translation.holds_length) return;
+    // |t + q v| = |t0|.
+    const Vector3<T> v =
+        ray2.x.cast<T>() * T(across_.y()) - motion->R * (ray1.x.cast<T>() * T(across_.x()));
+    const T b = motion->t.dot(v);
+    const T c = motion->t.squaredNorm() - T(t0_.squaredNorm());
+    motion->t += v * ((sqrt(b * b - v.squaredNorm() * c) - b) / v.squaredNorm());
   }
 
   void SetDepths() {
@@ -222,9 +200,7 @@ class ChartTwin {
       const Eigen::Vector3d t = ray2.s - R0_ * ray1.s + by_depth * distance_;
       return by_depth.transpose() * t;
     };
-    if (form_.translation != TranslationForm::kPlanarDepths &&
-        form_.translation != TranslationForm::kPlanarDepth &&
-        form_.translation != TranslationForm::kPlanarDepthsOnSphere) {
+    if (!form_.translation.planar) {
       across_ = gradient().normalized();
       return;
     }
@@ -281,11 +257,14 @@ T EpipolarTwin(ResidualKind kind, const Motion<T>& motion, const Rig& rig, const
   return C / sqrt(across_i.squaredNorm() + across_j.squaredNorm()) * T(focal);
 }
 
-// prior_residuals.h: the direction's, the normal's, the distance's; a part without sigma is none.
+// prior_residuals.h: the direction's, the normal's, the distance's, the length's; a part without
+// sigma is none.
 template <class T>
-std::vector<T> PriorTwin(const MotionPrior& prior, PriorKind kind, const Pose& start,
+std::vector<T> PriorTwin(const MotionPrior& prior, const PriorParts& parts, const Pose& start,
                          const Motion<T>& motion) {
+  using std::log;
   using std::sqrt;
+  const PriorKind kind = parts.direction;
   std::vector<T> residuals;
   // The library goes on with the chord of 3 radians beyond it, which the header does not say.
   const double angle = std::clamp(Eigen::AngleAxisd(start.R).angle(), kMinAxisAngle, 3.0);
@@ -306,11 +285,28 @@ std::vector<T> PriorTwin(const MotionPrior& prior, PriorKind kind, const Pose& s
                           T(start.t.norm() * *prior.normal_sigma));
     }
   }
-  if (prior.distance_sigma > 0) {
-    residuals.push_back((sqrt(motion.t.squaredNorm()) - T(*prior.distance)) /
-                        T(prior.distance_sigma));
+  if (parts.distance && prior.distance_sigma > 0) {
+    // The body's origin lies at -c from the point c: it moves as the point does, and turns about
+    // it.
+    const Vector3<T> origin = Eigen::Vector3d(-Eigen::Vector3d::Map(parts.point.data())).cast<T>();
+    const Vector3<T> moved = motion.R * origin + motion.t - origin;
+    residuals.push_back((sqrt(moved.squaredNorm()) - T(*prior.distance)) / T(prior.distance_sigma));
+  }
+  if (parts.typical_length > 0) {
+    const T ratio2 = motion.t.squaredNorm() / T(parts.typical_length * parts.typical_length);
+    residuals.push_back(log(ratio2) / T(2.0 * kLengthSigma));
   }
   return residuals;
+}
+
+// Bit 0 of `lengths`: the distance, of a point of the body. Bit 1: the weak length.
+inline PriorParts RandomParts(PriorKind kind, int lengths, Random* random) {
+  PriorParts parts;
+  parts.direction = kind;
+  parts.distance = lengths % 2 == 1;
+  if (lengths >= 2) parts.typical_length = random->Uniform(0.3, 3.0);
+  Eigen::Vector3d::Map(parts.point.data()) = RandomVector3(0.0, 2.0, random);
+  return parts;
 }
 
 // reprojection_cost.h: the point as homogeneous coordinates (X, rho) in each frame in turn.
@@ -351,8 +347,9 @@ struct Point {
   Start start;
 };
 
-// Rotations of all three sizes in turn; a start off the prior, the plane and the reference.
-inline Point MakePoint(int number) {
+// Rotations of all three sizes in turn; a start off the prior, the plane and the reference. With
+// `limits_length` some have a range of |t|.
+inline Point MakePoint(int number, bool limits_length = false) {
   Random random = Random::Stream(131, number);
   Point p;
   p.number = number;
@@ -363,6 +360,9 @@ inline Point MakePoint(int number) {
   exact.t = RandomVector3(0.3, 3.0, &random);
   p.start.pose = StartNear(exact, 3.0, 0.1, &random);
   if (number % 3 != 2) p.start.pose.R = exact.R;
+  if (limits_length && number % 10 == 7) {
+    p.start.range = {0.25 * p.start.pose.t.norm(), 10.0 * p.start.pose.t.norm()};
+  }
   MotionPrior prior;
   PriorKind kind = PriorKind::kVertical;
   if (number % 2 == 0) {
@@ -395,8 +395,9 @@ inline Point MakePoint(int number) {
 
 using Parameters = std::array<double, 6>;
 
-// Nonzero, and angles of every size; every tenth inverse scale is out of its bounds if `any_scale`.
-inline Parameters RandomParameters(const Form& form, int number, bool any_scale, Random* random) {
+// Nonzero, and angles of every size; every tenth |t| is out of its range if `limits_length`.
+inline Parameters RandomParameters(const Form& form, int number, bool limits_length,
+                                   Random* random) {
   Parameters x{};
   int n = 0;
   const double sign = random->Index(2) == 0 ? 1.0 : -1.0;
@@ -413,22 +414,17 @@ inline Parameters RandomParameters(const Form& form, int number, bool any_scale,
     x[k] = random->Index(2) == 0 ? size : -size;
   }
   const double bend = Angle((number / 9) % 3, random);
-  switch (form.translation) {
-    case TranslationForm::kInverseScale:
-      x[n + 2] = random->Uniform(-0.7, 2.5);
-      if (any_scale && number % 10 == 7) x[n + 2] = number % 20 == 7 ? 3.5 : -1.5;
-      [[fallthrough]];
-    case TranslationForm::kSphere: {
-      const double at = random->Uniform(0.0, 2.0 * kPi);
-      x[n] = bend * std::cos(at);
-      x[n + 1] = bend * std::sin(at);
-      break;
-    }
-    case TranslationForm::kCircle:
-      x[n] = sign * bend;
-      break;
-    default:
-      break;
+  if (form.translation.depths) return x;
+  if (form.translation.planar) {
+    x[n++] = sign * bend;
+  } else {
+    const double at = random->Uniform(0.0, 2.0 * kPi);
+    x[n++] = bend * std::cos(at);
+    x[n++] = bend * std::sin(at);
+  }
+  if (!form.translation.holds_length) {
+    x[n] = random->Uniform(-1.2, 0.5);
+    if (limits_length && number % 10 == 7) x[n] = number % 20 == 7 ? 5.0 : -3.5;
   }
   return x;
 }

@@ -177,13 +177,16 @@ TEST(Jacobian, ZeroParallaxIsNothingSpecial) {
   by_point.Expect("point", kTolerance, count);
 }
 
-// At t = 0 the distance has no derivative: its row is zero, the others are not touched.
+// At rest the distance has no derivative: its row is zero, the others are not touched.
 TEST(Jacobian, DistancePriorHasNoDerivativeAtRest) {
   Random random(140);
   for (const PriorKind kind : kPriorKinds) {
     MotionPrior prior = FullPrior(&random);
     Pose pose = MakePoint(2).start.pose;
-    const PriorResiduals residuals(prior, kind, pose);
+    PriorParts parts;
+    parts.direction = kind;
+    parts.distance = true;
+    const PriorResiduals residuals(prior, parts, pose);
     PriorResiduals::Residuals r;
     PriorResiduals::Jacobian J, moving;
     residuals.Evaluate(pose, &r, &moving);
@@ -194,6 +197,20 @@ TEST(Jacobian, DistancePriorHasNoDerivativeAtRest) {
     EXPECT_EQ(J.row(last).norm(), 0.0);
     EXPECT_EQ((J.topRows(last) - moving.topRows(last)).norm(), 0.0);
   }
+}
+
+// The logarithm of no length: finite, far below the typical one, and no derivative.
+TEST(Jacobian, WeakLengthIsFiniteAtRest) {
+  PriorParts parts;
+  parts.typical_length = 0.7;
+  const PriorResiduals residuals(MotionPrior(), parts, Pose());
+  PriorResiduals::Residuals r;
+  PriorResiduals::Jacobian J;
+  residuals.Evaluate(Pose(), &r, &J);
+  ASSERT_EQ(r.size(), 1);
+  EXPECT_TRUE(std::isfinite(r(0)));
+  EXPECT_LT(r(0), -20.0);
+  EXPECT_EQ(J.norm(), 0.0);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ TEST(Jacobian, ChartMatchesAutomaticDifferentiation) {
   Worst values, derivatives;
   int columns = 0;
   for (int i = 0; i < kPoints; ++i) {
-    const Point p = MakePoint(i);
+    const Point p = MakePoint(i, true);
     Random random = Random::Stream(132, i);
     for (const Form& form : kForms) {
       const MotionParameterization chart = MakeChart(form, p.start);
@@ -26,7 +26,7 @@ TEST(Jacobian, ChartMatchesAutomaticDifferentiation) {
       columns += form.size;
     }
   }
-  values.Expect("values", kTolerance, kPoints * 18);
+  values.Expect("values", kTolerance, kPoints * kNumForms);
   derivatives.Expect("derivatives", kTolerance, columns);
 }
 
@@ -34,10 +34,10 @@ TEST(Jacobian, ChartMatchesAutomaticDifferentiation) {
 // the way from it is short.
 TEST(Jacobian, DepthsOnTheSphereMatchAutomaticDifferentiation) {
   constexpr Form kOnSphere[] = {
-      {RotationForm::kFree, TranslationForm::kDepthsOnSphere, "free, depths on the sphere", 4},
-      {RotationForm::kAngle, TranslationForm::kDepthsOnSphere, "angle, depths on the sphere", 2},
-      {RotationForm::kFree, TranslationForm::kPlanarDepthsOnSphere, "free, planar", 3},
-      {RotationForm::kAngle, TranslationForm::kPlanarDepthsOnSphere, "angle, planar", 1}};
+      {RotationForm::kFree, kDepthsOnSphere, "free, depths on the sphere", 4},
+      {RotationForm::kAngle, kDepthsOnSphere, "angle, depths on the sphere", 2},
+      {RotationForm::kFree, kPlanarDepthsOnSphere, "free, planar", 3},
+      {RotationForm::kAngle, kPlanarDepthsOnSphere, "angle, planar", 1}};
   Worst values, derivatives;
   int columns = 0, compared = 0;
   for (int i = 0; i < kPoints; ++i) {
@@ -45,8 +45,8 @@ TEST(Jacobian, DepthsOnTheSphereMatchAutomaticDifferentiation) {
     Random random = Random::Stream(142, i);
     for (const Form& form : kOnSphere) {
       // A start of the form: the reference and, where it is exact, the prior hold.
-      const bool planar = form.translation == TranslationForm::kPlanarDepthsOnSphere;
-      const auto free_form = planar ? TranslationForm::kPlanarDepths : TranslationForm::kDepths;
+      TranslationForm free_form = form.translation;
+      free_form.holds_length = false;
       const Parameters zero{};
       Start start = p.start;
       MotionParameterization chart;
@@ -80,7 +80,7 @@ TEST(Jacobian, EpipolarResidualsMatchAutomaticDifferentiation) {
   using Jet = ceres::Jet<double, 6>;
   Worst values[3], derivatives[3];
   for (int i = 0; i < kPoints; ++i) {
-    const Point p = MakePoint(i);
+    const Point p = MakePoint(i, true);
     const GroupedMatches matches(p.rig, p.matches);
     Random random = Random::Stream(133, i);
     for (const Form& form : kForms) {
@@ -107,9 +107,10 @@ TEST(Jacobian, EpipolarResidualsMatchAutomaticDifferentiation) {
     }
   }
   for (int kind = 0; kind < 3; ++kind) {
-    values[kind].Expect(std::string(kKindNames[kind]) + "_values", kTolerance, kPoints * 18 * 9);
+    values[kind].Expect(std::string(kKindNames[kind]) + "_values", kTolerance,
+                        kPoints * kNumForms * 9);
     derivatives[kind].Expect(std::string(kKindNames[kind]) + "_derivatives", kTolerance,
-                             kPoints * 18 * 9);
+                             kPoints * kNumForms * 9);
   }
 }
 
@@ -121,20 +122,21 @@ TEST(Jacobian, PriorResidualsMatchAutomaticDifferentiation) {
   for (int i = 0; i < kPoints; ++i) {
     Random random = Random::Stream(134, i);
     for (const PriorKind kind : kPriorKinds) {
-      for (const bool distance : {true, false}) {
+      for (const int lengths : {0, 1, 2, 3}) {  // none, the distance, the weak one, both
         MotionPrior prior = FullPrior(&random);
-        if (!distance) prior.distance_sigma = 0.0;
+        const PriorParts parts = RandomParts(kind, lengths, &random);
+        if (!parts.distance && i % 2 == 0) prior.distance_sigma = 0.0;
         Pose start, pose;
         start.R = RandomRotation((i / 3) % 3, &random);
         start.t = RandomVector3(0.2, 3.0, &random);
         if (i % 10 == 9) start.t.setZero();
         pose.R = RandomRotation(i % 3, &random);
         pose.t = RandomVector3(0.2, 3.0, &random);
-        const PriorResiduals residuals(prior, kind, start);
+        const PriorResiduals residuals(prior, parts, start);
         PriorResiduals::Residuals r;
         PriorResiduals::Jacobian J;
         residuals.Evaluate(pose, &r, &J);
-        const std::vector<Jet> twin = PriorTwin<Jet>(prior, kind, start, PerturbedJets<Jet>(pose));
+        const std::vector<Jet> twin = PriorTwin<Jet>(prior, parts, start, PerturbedJets<Jet>(pose));
         ASSERT_EQ(residuals.size(), static_cast<int>(twin.size()));
         ASSERT_EQ(J.rows(), residuals.size());
         for (int k = 0; k < residuals.size(); ++k) {
@@ -149,7 +151,7 @@ TEST(Jacobian, PriorResidualsMatchAutomaticDifferentiation) {
       }
     }
   }
-  EXPECT_GT(rows, kPoints * 16);
+  EXPECT_GT(rows, kPoints * 40);
   values.Expect("values", kTolerance, rows);
   derivatives.Expect("derivatives", kTolerance, rows);
 }
@@ -160,7 +162,7 @@ TEST(Jacobian, ReprojectionCostMatchesAutomaticDifferentiation) {
   Worst values, by_motion, by_point;
   int count = 0;
   for (int i = 0; i < kPoints; ++i) {
-    const Point p = MakePoint(i);
+    const Point p = MakePoint(i, true);
     Random random = Random::Stream(135, i);
     for (const Form& form : kForms) {
       const MotionParameterization chart = MakeChart(form, p.start);
@@ -194,7 +196,7 @@ TEST(Jacobian, ReprojectionCostMatchesAutomaticDifferentiation) {
       }
     }
   }
-  EXPECT_GT(count, kPoints * 18 * 8);
+  EXPECT_GT(count, kPoints * kNumForms * 8);
   values.Expect("values", kTolerance, count);
   by_motion.Expect("motion", kTolerance, count);
   by_point.Expect("point", kTolerance, count);

@@ -9,6 +9,7 @@
 
 #include "rigel/core/epipolar.h"
 #include "rigel/test/core/random_vector.h"
+#include "rigel/test/refine/least_squares/translation_forms.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -17,21 +18,15 @@ namespace {
 struct Form {
   TranslationForm form;
   const char* name;
-  int size;
-  bool planar;
-  bool depths;
 };
 
 constexpr Form kForms[] = {
-    {TranslationForm::kFree, "free", 3, false, false},
-    {TranslationForm::kSphere, "sphere", 2, false, false},
-    {TranslationForm::kInverseScale, "inverse scale", 3, false, false},
-    {TranslationForm::kPlane, "plane", 2, true, false},
-    {TranslationForm::kCircle, "circle", 1, true, false},
-    {TranslationForm::kDepths, "depths", 2, false, true},
-    {TranslationForm::kDepth, "depth", 1, false, true},
-    {TranslationForm::kPlanarDepths, "planar depths", 1, true, true},
-    {TranslationForm::kPlanarDepth, "planar depth", 0, true, true},
+    {kFreeTranslation, "free"}, {kSphere, "sphere"}, {kPlane, "plane"},
+    {kCircle, "circle"},        {kDepths, "depths"}, {kPlanarDepths, "planar depths"},
+};
+constexpr Form kFormsOnSphere[] = {
+    {kDepthsOnSphere, "depths on the sphere"},
+    {kPlanarDepthsOnSphere, "planar depths on the sphere"},
 };
 constexpr RotationForm kRotations[] = {RotationForm::kFree, RotationForm::kAngle};
 
@@ -85,11 +80,11 @@ TEST(MotionParameterization, ReproducesAStartOfItsForm) {
         SCOPED_TRACE(form.name);
         MotionParameterization chart;
         ASSERT_TRUE(chart.Set(rotation, form.form, p.pose, p.alignment, p.reference));
-        ASSERT_EQ(chart.size(), (rotation == RotationForm::kFree ? 3 : 1) + form.size);
+        ASSERT_EQ(chart.size(), (rotation == RotationForm::kFree ? 3 : 1) + form.form.size());
         const Pose start = At(chart, std::vector<double>(6, 0.0));
         EXPECT_LT((start.R - p.pose.R).norm(), 1e-12);
         // A reference of little parallax amplifies rounding.
-        EXPECT_LT((start.t - p.pose.t).norm(), form.depths ? 1e-9 : 1e-12);
+        EXPECT_LT((start.t - p.pose.t).norm(), form.form.depths ? 1e-9 : 1e-12);
       }
     }
   }
@@ -118,37 +113,21 @@ TEST(MotionParameterization, ProjectsAStartThatIsNotOfItsForm) {
           }
         }
         const Eigen::Vector3d gx = at.R * p.reference.ray1.x;
-        switch (form.form) {
-          case TranslationForm::kFree:
-          case TranslationForm::kSphere:
-          case TranslationForm::kInverseScale:
-            EXPECT_LT((at.t - start.t).norm(), 1e-12);
-            break;
-          case TranslationForm::kPlane:
-            EXPECT_LT((at.t - (start.t - p.n2 * p.n2.dot(start.t))).norm(), 1e-12);
-            break;
-          case TranslationForm::kCircle: {
-            const Eigen::Vector3d in_plane = start.t - p.n2 * p.n2.dot(start.t);
-            EXPECT_LT((at.t - start.t.norm() * in_plane.normalized()).norm(), 1e-12);
-            break;
-          }
-          case TranslationForm::kDepths:
-          case TranslationForm::kDepth:
+        if (form.form.depths) {
+          EXPECT_NEAR(GecTripleProduct(at, p.reference), 0.0, 1e-10);
+          if (!form.form.planar) {
             // The shortest way that makes the rays meet is along their common perpendicular.
             EXPECT_NEAR((at.t - start.t).dot(gx), 0.0, 1e-9);
             EXPECT_NEAR((at.t - start.t).dot(p.reference.ray2.x), 0.0, 1e-9);
-            EXPECT_NEAR(GecTripleProduct(at, p.reference), 0.0, 1e-10);
-            break;
-          case TranslationForm::kDepthsOnSphere:
-          case TranslationForm::kPlanarDepthsOnSphere:
-            break;  // DepthsOnTheSphereHoldTheLengthOfT
-          case TranslationForm::kPlanarDepths:
-          case TranslationForm::kPlanarDepth:
-            EXPECT_NEAR(GecTripleProduct(at, p.reference), 0.0, 1e-10);
-            if (rotation == RotationForm::kAngle) {
-              EXPECT_NEAR(at.t.dot(p.n2), 0.0, 1e-9);
-            }
-            break;
+          } else if (rotation == RotationForm::kAngle) {
+            EXPECT_NEAR(at.t.dot(p.n2), 0.0, 1e-9);
+          }
+        } else if (form.form.planar) {
+          const Eigen::Vector3d in_plane = start.t - p.n2 * p.n2.dot(start.t);
+          const double stretch = form.form.holds_length ? start.t.norm() / in_plane.norm() : 1.0;
+          EXPECT_LT((at.t - stretch * in_plane).norm(), 1e-12);
+        } else {
+          EXPECT_LT((at.t - start.t).norm(), 1e-12);
         }
       }
     }
@@ -208,16 +187,14 @@ TEST(MotionParameterization, KeepsWhatItsFormTakesAsExact) {
           if (rotation == RotationForm::kAngle) {
             EXPECT_LT((pose.R * p.n1 - p.n2).norm(), 1e-12);
           }
-          const bool kept_length =
-              form.form == TranslationForm::kSphere || form.form == TranslationForm::kCircle;
-          if (kept_length) {
+          if (form.form.holds_length) {
             EXPECT_NEAR(pose.t.norm(), start.t.norm(), 1e-12);
           }
           // With depths the plane turns with a free rotation; no form of Refine() combines them.
-          if (form.planar && (!form.depths || rotation == RotationForm::kAngle)) {
+          if (form.form.planar && (!form.form.depths || rotation == RotationForm::kAngle)) {
             EXPECT_NEAR(pose.t.dot(p.n2), 0.0, 1e-8);
           }
-          if (form.depths) {
+          if (form.form.depths) {
             EXPECT_NEAR(GecTripleProduct(pose, p.reference), 0.0, 1e-10 * (1 + pose.t.norm()));
           }
         }
@@ -226,27 +203,16 @@ TEST(MotionParameterization, KeepsWhatItsFormTakesAsExact) {
   }
 }
 
-TEST(MotionParameterization, DepthKeepsTheFirstDepthOfTheReference) {
-  const Problem p = MakeProblem(3);
-  MotionParameterization chart;
-  ASSERT_TRUE(
-      chart.Set(RotationForm::kFree, TranslationForm::kDepth, p.pose, p.alignment, p.reference));
-  // R = R0: t moves along the second ray alone.
-  const Pose start = At(chart, {0, 0, 0, 0});
-  const Pose moved = At(chart, {0, 0, 0, 2.5});
-  EXPECT_LT((moved.t - start.t - 2.5 * p.reference.ray2.x).norm(), 1e-12);
-}
-
 TEST(MotionParameterization, DepthsOnTheSphereHoldTheLengthOfT) {
   int count = 0, held = 0;
   for (uint64_t seed = 0; seed < 200; ++seed) {
     const Problem p = MakeProblem(seed);
     Pose start = p.pose;
     start.t *= 1.01;  // not of the reference
-    for (const TranslationForm form :
-         {TranslationForm::kDepthsOnSphere, TranslationForm::kPlanarDepthsOnSphere}) {
+    for (const Form& form : kFormsOnSphere) {
       MotionParameterization chart;
-      ASSERT_TRUE(chart.Set(RotationForm::kFree, form, start, p.alignment, p.reference));
+      ASSERT_TRUE(chart.Set(RotationForm::kFree, form.form, start, p.alignment, p.reference));
+      ASSERT_EQ(chart.size(), form.form.planar ? 3 : 4);
       for (const double turn : {-0.003, 0.0, 0.003}) {
         const Pose pose = At(chart, {turn, 0.5 * turn, -turn, 2.0 * turn});
         // There may be no such depths: then |t| is the nearest, which is longer.
@@ -261,23 +227,47 @@ TEST(MotionParameterization, DepthsOnTheSphereHoldTheLengthOfT) {
   EXPECT_GE(held, 0.95 * count);
 }
 
-TEST(MotionParameterization, InverseScaleStaysWithinItsBoundsAndNeverChangesTheSign) {
+// The logarithm of |t|: equal steps either way are equal factors, and the direction stays.
+TEST(MotionParameterization, TheLengthMovesByItsLogarithm) {
   const Problem p = MakeProblem(4);
-  MotionParameterization chart;
-  ASSERT_TRUE(chart.Set(RotationForm::kFree, TranslationForm::kInverseScale, p.pose, p.alignment,
-                        p.reference));
+  for (const TranslationForm& form : {kFreeTranslation, kPlane}) {
+    MotionParameterization chart;
+    ASSERT_TRUE(chart.Set(RotationForm::kFree, form, p.pose, p.alignment, p.reference));
+    std::vector<double> x(6, 0.0);
+    double& log = x[chart.size() - 1];
+    for (const double at : {-50.0, -1.0, 0.5, 30.0}) {
+      log = at;
+      EXPECT_LT((At(chart, x).t / std::exp(at) - p.pose.t).norm(), 1e-12);
+    }
+  }
+}
+
+TEST(MotionParameterization, TheLengthStaysWithinItsRange) {
+  const Problem p = MakeProblem(4);
   const double norm = p.pose.t.norm();
-  for (const double beyond : {-0.9995, -1.0, -2.0, -1e6}) {
-    const std::vector<double> x = {0, 0, 0, 0, 0, beyond};
+  const LengthRange range = {0.25 * norm, 1000.0 * norm};
+  for (const TranslationForm& form : {kFreeTranslation, kPlane}) {
+    MotionParameterization chart;
+    ASSERT_TRUE(chart.Set(RotationForm::kFree, form, p.pose, p.alignment, p.reference, range));
+    std::vector<double> x(6, 0.0);
+    double& log = x[chart.size() - 1];
     Pose pose;
     MotionBasis basis;
-    chart.Evaluate(x.data(), &pose, &basis);
-    EXPECT_LT((pose.t - 1000.0 * p.pose.t).norm(), 1e-9 * norm * 1000.0);
-    // A parameter that does not move the motion must say so.
-    EXPECT_EQ(basis.col(5).norm(), 0.0);
+    for (const double beyond : {-1.4, -20.0, -1e6, 6.95, 1e6}) {
+      log = beyond;
+      chart.Evaluate(x.data(), &pose, &basis);
+      const double share = beyond < 0 ? 0.25 : 1000.0;
+      EXPECT_LT((pose.t - share * p.pose.t).norm(), 1e-9 * norm * share);
+      // A parameter that does not move the motion must say so.
+      EXPECT_EQ(basis.col(chart.size() - 1).norm(), 0.0);
+    }
+    for (const double within : {-1.38, 6.9}) {
+      log = within;
+      chart.Evaluate(x.data(), &pose, &basis);
+      EXPECT_NEAR(pose.t.norm(), norm * std::exp(within), 1e-12 * pose.t.norm());
+      EXPECT_GT(basis.col(chart.size() - 1).norm(), 0.0);
+    }
   }
-  EXPECT_LT((At(chart, {0, 0, 0, 0, 0, 50.0}).t - 0.25 * p.pose.t).norm(), 1e-12);
-  EXPECT_LT((At(chart, {0, 0, 0, 0, 0, 1.0}).t - 0.5 * p.pose.t).norm(), 1e-12);
 }
 
 TEST(MotionParameterization, RefusesAStartWithoutAPlaceInTheForm) {
@@ -288,15 +278,16 @@ TEST(MotionParameterization, RefusesAStartWithoutAPlaceInTheForm) {
   for (const RotationForm rotation : kRotations) {
     for (const Form& form : kForms) {
       SCOPED_TRACE(form.name);
-      const bool needs_direction = form.form == TranslationForm::kSphere ||
-                                   form.form == TranslationForm::kInverseScale ||
-                                   form.form == TranslationForm::kCircle;
-      EXPECT_EQ(chart.Set(rotation, form.form, still, p.alignment, p.reference), !needs_direction);
+      EXPECT_EQ(chart.Set(rotation, form.form, still, p.alignment, p.reference), form.form.depths);
       // Rays of one point at infinity.
       RayPair parallel = p.reference;
       parallel.ray2.x = p.pose.R * parallel.ray1.x;
       EXPECT_EQ(chart.Set(RotationForm::kFree, form.form, p.pose, p.alignment, parallel),
-                !form.depths);
+                !form.form.depths);
+    }
+    for (const Form& form : kFormsOnSphere) {
+      SCOPED_TRACE(form.name);
+      EXPECT_FALSE(chart.Set(rotation, form.form, still, p.alignment, p.reference));
     }
   }
   // t along the normal has no direction in the plane.
@@ -307,16 +298,16 @@ TEST(MotionParameterization, RefusesAStartWithoutAPlaceInTheForm) {
   ASSERT_TRUE(MakeAlignment(prior, PriorKind::kPlanar, &upright, &error)) << error;
   Pose climbing;
   climbing.t = {0, 2, 0};
-  EXPECT_FALSE(
-      chart.Set(RotationForm::kAngle, TranslationForm::kCircle, climbing, upright, p.reference));
+  for (const TranslationForm& form : {kPlane, kCircle}) {
+    EXPECT_FALSE(chart.Set(RotationForm::kAngle, form, climbing, upright, p.reference));
+  }
   // A reference on the horizon says nothing of the height: no line of depths in the plane.
   RayPair horizon;
   horizon.ray1.x = {0, 0, 1};
   horizon.ray2.x = Eigen::Vector3d(0.1, 0, 1).normalized();
   Pose forward;
   forward.t = {0, 0, 1};
-  for (const TranslationForm form :
-       {TranslationForm::kPlanarDepths, TranslationForm::kPlanarDepth}) {
+  for (const TranslationForm& form : {kPlanarDepths, kPlanarDepthsOnSphere}) {
     EXPECT_FALSE(chart.Set(RotationForm::kAngle, form, forward, upright, horizon));
   }
 }
@@ -338,8 +329,7 @@ TEST(MotionParameterization, PlanarDepthsTakeOneRayOnTheHorizon) {
   reference.ray2.x = (forward * X1 - reference.ray2.s).normalized();
   ASSERT_NEAR(reference.ray2.x.y(), 0.0, 1e-15);
   MotionParameterization chart;
-  ASSERT_TRUE(
-      chart.Set(RotationForm::kAngle, TranslationForm::kPlanarDepths, forward, upright, reference));
+  ASSERT_TRUE(chart.Set(RotationForm::kAngle, kPlanarDepths, forward, upright, reference));
   EXPECT_LT((At(chart, {0, 0}).t - forward.t).norm(), 1e-10);
   for (const double x : {-3.0, 0.5, 4.0}) EXPECT_NEAR(At(chart, {0, x}).t.y(), 0.0, 1e-12);
 }

@@ -12,31 +12,11 @@
 
 #include "rigel/core/epipolar.h"
 #include "rigel/refine/least_squares/uncertainty.h"
+#include "rigel/test/refine/pixel_noise.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
 namespace {
-
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-Match Moved(Match m, int coordinate, double h) {
-  (coordinate < 2 ? m.pixel1 : m.pixel2)(coordinate % 2) += h;
-  return m;
-}
-
-Vector6 NumericRow(const Rig& rig, const Match& m, const Pose& pose) {
-  Vector6 row;
-  for (int k = 0; k < 6; ++k) {
-    row(k) = CentralDifference(
-        [&](double h) {
-          Vector6d step = Vector6d::Zero();
-          step(k) = h;
-          return Eigen::Matrix<double, 1, 1>(SampsonError(Perturbed(pose, step), rig, m));
-        },
-        1e-4)(0);
-  }
-  return row;
-}
 
 TEST(NoiseInformation, MatchesNumericDifferentiation) {
   for (int index = 0; index < 20; ++index) {
@@ -113,49 +93,20 @@ TEST(NoiseInformation, NothingAtAnEpipole) {
   EXPECT_EQ(D, Matrix6d(Matrix6d::Zero()));
 }
 
-// Stereo before a wall at 8 to 9 m, 0.58 m of motion.
-std::vector<Match> WallMatches(const Rig& rig, const Pose& truth, Random* random) {
-  std::vector<Match> matches;
-  while (matches.size() < 200) {
-    const Eigen::Vector3d X(random->Uniform(-6, 6), random->Uniform(-3, 2), random->Uniform(8, 9));
-    Match m;
-    m.camera1 = static_cast<int>(matches.size()) % 2;
-    m.camera2 = static_cast<int>(matches.size() / 2) % 2;
-    const auto project = [&](const RigCamera& camera, const Eigen::Vector3d& x) {
-      const Eigen::Vector3d p = camera.Q.transpose() * (x - camera.s);
-      return Pixel(camera.intrinsics.fx * p.x() / p.z() + camera.intrinsics.cx,
-                   camera.intrinsics.fy * p.y() / p.z() + camera.intrinsics.cy);
-    };
-    m.pixel1 = project(rig.cameras[m.camera1], X);
-    m.pixel2 = project(rig.cameras[m.camera2], truth.R * X + truth.t);
-    matches.push_back(m);
-  }
-  return matches;
-}
-
 // The mean over 200 draws of J'J / sigma^2 - D is J'J / sigma^2 of the exact pixels, in every
 // direction to 5 percent of it. Without D it is twice as large in the worst.
 TEST(NoiseInformation, IsWhatNoiseAdds) {
-  Rig rig;
-  for (const double x : {0.0, 0.537}) {
-    RigCamera camera;
-    camera.intrinsics = {707, 707, 601, 183, 1226, 370};
-    camera.s = {x, 0, 0};
-    rig.cameras.push_back(camera);
-  }
-  const Pose truth = {ExpSO3(Eigen::Vector3d(0, DegToRad(1.0), 0)), {0.5, 0, -0.3}};
   Random random(1);
-  const std::vector<Match> exact = WallMatches(rig, truth, &random);
+  const FramePair wall = WallPair(&random);
+  const Rig& rig = wall.rig;
+  const Pose& truth = *wall.truth;
+  const std::vector<Match>& exact = wall.matches;
   const std::vector<double> ones(exact.size(), 1.0);
   constexpr double kNoise = 0.5;
   constexpr int kDraws = 200;
   Eigen::Matrix<double, 6, 6> noisy = Eigen::Matrix<double, 6, 6>::Zero(), D = noisy;
   for (int draw = 0; draw < kDraws; ++draw) {
-    std::vector<Match> matches = exact;
-    for (Match& m : matches) {
-      for (int c = 0; c < 4; ++c) m = Moved(m, c, kNoise * random.Normal());
-    }
-    const GroupedMatches grouped(rig, matches);
+    const GroupedMatches grouped(rig, WithNoise(exact, kNoise, &random));
     noisy += SampsonInformation(grouped, ones, truth) / (kNoise * kNoise * kDraws);
     D += NoiseInformation(grouped, ones, truth) / kDraws;
   }

@@ -18,18 +18,39 @@ Pose RandomPose(Random* random) {
   return pose;
 }
 
+PriorParts Direction(PriorKind kind) {
+  PriorParts parts;
+  parts.direction = kind;
+  return parts;
+}
+
+// One of the distance too.
+PriorParts WithDistance(PriorKind kind) {
+  PriorParts parts = Direction(kind);
+  parts.distance = true;
+  return parts;
+}
+
+constexpr PriorKind kDirections[] = {PriorKind::kVertical, PriorKind::kAxis, PriorKind::kPlanar};
+
 TEST(PriorResiduals, OnlyPartsWithASigmaGiveResiduals) {
   Random random(1);
   const MotionPrior full = FullPrior(&random);
   const Pose pose = RandomPose(&random);
   EXPECT_EQ(PriorResiduals().size(), 0);
-  // One of the distance with each of them.
-  EXPECT_EQ(PriorResiduals(full, PriorKind::kNone, pose).size(), 1);
-  EXPECT_EQ(PriorResiduals(full, PriorKind::kVertical, pose).size(), 3);
-  EXPECT_EQ(PriorResiduals(full, PriorKind::kAxis, pose).size(), 3);
-  EXPECT_EQ(PriorResiduals(full, PriorKind::kPlanar, pose).size(), 4);
+  EXPECT_EQ(PriorResiduals(full, PriorParts(), pose).size(), 0);
+  EXPECT_EQ(PriorResiduals(full, Direction(PriorKind::kPlanar), pose).size(), 3);
+  EXPECT_EQ(PriorResiduals(full, WithDistance(PriorKind::kNone), pose).size(), 1);
+  EXPECT_EQ(PriorResiduals(full, WithDistance(PriorKind::kVertical), pose).size(), 3);
+  EXPECT_EQ(PriorResiduals(full, WithDistance(PriorKind::kAxis), pose).size(), 3);
+  EXPECT_EQ(PriorResiduals(full, WithDistance(PriorKind::kPlanar), pose).size(), 4);
   // At t = 0 a plane says nothing of the direction of t.
-  EXPECT_EQ(PriorResiduals(full, PriorKind::kPlanar, Pose()).size(), 3);
+  EXPECT_EQ(PriorResiduals(full, WithDistance(PriorKind::kPlanar), Pose()).size(), 3);
+  // The weak length needs no prior.
+  PriorParts all = WithDistance(PriorKind::kPlanar);
+  all.typical_length = 1.0;
+  EXPECT_EQ(PriorResiduals(full, all, pose).size(), kMaxPriorResiduals);
+  EXPECT_EQ(PriorResiduals(MotionPrior(), all, pose).size(), 1);
 
   MotionPrior silent = full;
   silent.gravity_sigma.reset();
@@ -38,9 +59,9 @@ TEST(PriorResiduals, OnlyPartsWithASigmaGiveResiduals) {
   silent.distance_sigma = 0.0;
   MotionPrior empty;
   empty.gravity_sigma = empty.axis_sigma = empty.normal_sigma = 0.01;
-  for (const PriorKind kind : {PriorKind::kVertical, PriorKind::kAxis, PriorKind::kPlanar}) {
+  for (const PriorKind kind : kDirections) {
     for (const MotionPrior& prior : {silent, empty}) {
-      const PriorResiduals residuals(prior, kind, pose);
+      const PriorResiduals residuals(prior, WithDistance(kind), pose);
       EXPECT_EQ(residuals.size(), 0);
       PriorResiduals::Residuals r;
       PriorResiduals::Jacobian J;
@@ -57,8 +78,11 @@ TEST(PriorResiduals, JacobianMatchesNumericDifferentiation) {
     const MotionPrior prior = FullPrior(&random);
     const Pose start = RandomPose(&random);
     const Pose pose = RandomPose(&random);
-    for (const PriorKind kind : {PriorKind::kVertical, PriorKind::kAxis, PriorKind::kPlanar}) {
-      const PriorResiduals residuals(prior, kind, start);
+    for (const PriorKind kind : kDirections) {
+      PriorParts parts = WithDistance(kind);
+      parts.typical_length = random.Uniform(0.3, 3.0);
+      Eigen::Vector3d::Map(parts.point.data()) = RandomVector3(0.0, 2.0, &random);
+      const PriorResiduals residuals(prior, parts, start);
       PriorResiduals::Residuals r;
       PriorResiduals::Jacobian J;
       residuals.Evaluate(pose, &r, &J);
@@ -88,8 +112,8 @@ TEST(PriorResiduals, VanishWhereThePriorHolds) {
   prior.gravity2 = pose.R * *prior.gravity1;
   prior.axis = prior.normal = axis;
   prior.gravity_sigma = prior.axis_sigma = prior.normal_sigma = 1e-3;
-  for (const PriorKind kind : {PriorKind::kVertical, PriorKind::kAxis, PriorKind::kPlanar}) {
-    const PriorResiduals residuals(prior, kind, pose);
+  for (const PriorKind kind : kDirections) {
+    const PriorResiduals residuals(prior, Direction(kind), pose);
     PriorResiduals::Residuals r;
     residuals.Evaluate(pose, &r, nullptr);
     EXPECT_LT(r.norm(), 1e-11);
@@ -113,7 +137,7 @@ TEST(PriorResiduals, AreOfUnitVarianceUnderTheStatedSigma) {
     pose.R = ExpSO3(DegToRad(angle_deg) * axis);
     pose.t = 1.7 * axis.cross(random.UnitVector3()).normalized();
     const Eigen::Vector3d g1 = random.UnitVector3();
-    for (const PriorKind kind : {PriorKind::kVertical, PriorKind::kAxis, PriorKind::kPlanar}) {
+    for (const PriorKind kind : kDirections) {
       Eigen::Matrix3d second_moment = Eigen::Matrix3d::Zero();
       int size = 0;
       for (int i = 0; i < kDraws; ++i) {
@@ -122,7 +146,7 @@ TEST(PriorResiduals, AreOfUnitVarianceUnderTheStatedSigma) {
         prior.gravity2 = Disturbed(pose.R * g1, sigma, &random);
         prior.axis = prior.normal = Disturbed(axis, sigma, &random);
         prior.gravity_sigma = prior.axis_sigma = prior.normal_sigma = sigma;
-        const PriorResiduals residuals(prior, kind, pose);
+        const PriorResiduals residuals(prior, Direction(kind), pose);
         PriorResiduals::Residuals r;
         residuals.Evaluate(pose, &r, nullptr);
         size = static_cast<int>(r.size());
@@ -146,14 +170,54 @@ TEST(PriorResiduals, AnAxisOfNextToNoRotationIsWeighedAsThatOfTheSmallestAngle) 
   Pose still;
   PriorResiduals::Residuals r;
   PriorResiduals::Jacobian J;
-  PriorResiduals(prior, PriorKind::kAxis, still).Evaluate(still, &r, &J);
+  PriorResiduals(prior, Direction(PriorKind::kAxis), still).Evaluate(still, &r, &J);
   EXPECT_EQ(r.norm(), 0.0);
   EXPECT_NEAR(J.row(0).norm(), 1.0 / (0.01 * kMinAxisAngle), 1e-2);
   Pose half;
   half.R = ExpSO3(kPi * Eigen::Vector3d::UnitY());
-  PriorResiduals(prior, PriorKind::kAxis, half).Evaluate(half, &r, &J);
+  PriorResiduals(prior, Direction(PriorKind::kAxis), half).Evaluate(half, &r, &J);
   EXPECT_TRUE(J.allFinite());
   EXPECT_NEAR(J.row(0).norm(), 1.0 / (0.01 * 2.0), 0.2);
+}
+
+// The distance is that of the body's origin, whatever point the motion is of.
+TEST(PriorResiduals, TheDistanceIsThatOfTheBody) {
+  Random random(12);
+  MotionPrior prior;
+  prior.distance = 1.2;
+  prior.distance_sigma = 0.05;
+  for (int i = 0; i < 20; ++i) {
+    const Pose body = RandomPose(&random);
+    const Eigen::Vector3d c = RandomVector3(0.1, 2.0, &random);
+    PriorParts parts = WithDistance(PriorKind::kNone);
+    Eigen::Vector3d::Map(parts.point.data()) = c;
+    // The point with body coordinates c moves by R c + t - c.
+    const Pose of_point = {body.R, body.R * c + body.t - c};
+    PriorResiduals::Residuals r;
+    PriorResiduals(prior, parts, of_point).Evaluate(of_point, &r, nullptr);
+    ASSERT_EQ(r.size(), 1);
+    EXPECT_NEAR(r(0), (body.t.norm() - 1.2) / 0.05, 1e-9);
+    ASSERT_GT(std::abs(of_point.t.norm() - body.t.norm()), 1e-3);
+  }
+}
+
+// One standard deviation is a factor of exp(kLengthSigma) either way, of the motion of the point.
+TEST(PriorResiduals, TheWeakLengthIsALogarithm) {
+  PriorParts parts;
+  parts.typical_length = 0.4;
+  parts.point = {5, 6, 7};
+  Random random(13);
+  for (const double sigmas : {-2.0, -1.0, 0.0, 1.0, 3.0}) {
+    Pose pose = RandomPose(&random);
+    pose.t = 0.4 * std::exp(kLengthSigma * sigmas) * random.UnitVector3();
+    PriorResiduals::Residuals r;
+    PriorResiduals::Jacobian J;
+    PriorResiduals(MotionPrior(), parts, pose).Evaluate(pose, &r, &J);
+    EXPECT_NEAR(r(0), sigmas, 1e-12);
+    // Its information on log |b| does not depend on |b|.
+    EXPECT_NEAR(J.row(0).tail<3>().dot(pose.t), 1.0 / kLengthSigma, 1e-12);
+    EXPECT_EQ((J.row(0).head<3>().norm()), 0.0);
+  }
 }
 
 }  // namespace

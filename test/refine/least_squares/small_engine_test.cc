@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "rigel/core/rig_centre.h"
 #include "rigel/refine/least_squares/epipolar_residuals.h"
 #include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/refine.h"
@@ -17,6 +18,12 @@ namespace {
 
 std::vector<char> AllOf(const GroupedMatches& matches) {
   return std::vector<char>(matches.size(), 1);
+}
+
+// With no prior.
+bool Minimize(SmallEngine* engine, const LeastSquaresOptions& options,
+              const std::vector<char>& mask, Pose* pose) {
+  return engine->Minimize(options, mask, PriorResiduals(), 1.0, pose);
 }
 
 double Cost(const EpipolarResiduals& residuals, LossKind kind, double scale, const Pose& pose) {
@@ -77,32 +84,89 @@ TEST(SmallEngine, ReachesTheMinimumOfRefine) {
       refine.loss = kind;
       refine.loss_scale_sigmas = 3.0;
       refine.max_num_iterations = 500;
-      refine.scale = ScaleMode::kFree;
       refine.epipole_weights = false;
+      refine.typical_length = 0.5;
       Pose by_refine = start;
-      const RefineSummary summary = Refine(refine, matches, pair.prior, &by_refine);
+      const RefineSummary summary = Refine(refine, matches, MotionPrior(), &by_refine);
       ASSERT_TRUE(summary.IsSolutionUsable());
       ASSERT_EQ(summary.num_inliers, matches.size());
 
-      const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
-      for (const bool inverse_scale : {false, true}) {
-        SmallEngine engine(matches);
+      // Refine() fits the motion of the rig's centre, with the weak prior of its length.
+      const Eigen::Vector3d center = RigCentre(pair.rig);
+      const GroupedMatches centered = matches.WithOrigin(center);
+      PriorParts parts;
+      parts.typical_length = refine.typical_length;
+      const PriorResiduals prior(MotionPrior(), parts, Pose());
+      const EpipolarResiduals residuals(centered, ResidualKind::kSampson);
+      for (const bool limits_length : {false, true}) {
+        SmallEngine engine(centered);
         LeastSquaresOptions small;
         small.loss = kind;
         small.loss_scale = 1.5;
         small.max_num_iterations = 100;
         small.tolerance = 1e-14;
-        small.inverse_scale = inverse_scale;
-        Pose by_engine = start;
-        ASSERT_TRUE(engine.Minimize(small, AllOf(matches), &by_engine));
+        small.limits_length = limits_length;
+        Pose of_center = MotionOfPoint(start, center);
+        ASSERT_TRUE(engine.Minimize(small, AllOf(matches), prior, 0.5, &of_center));
+        const Pose by_engine = MotionOfBody(of_center, center);
         // Tukey's cost is flat where its weights leave next to nothing of a match.
         const double flat = kind == LossKind::kTukey ? 10.0 : 1.0;
         EXPECT_LT(Difference(by_engine, by_refine).head<3>().norm(), flat * 2e-6);
         EXPECT_LT(Difference(by_engine, by_refine).tail<3>().norm(), flat * 2e-5);
-        EXPECT_NEAR(Cost(residuals, kind, 1.5, by_engine), 2.0 * summary.final_cost,
-                    1e-6 * summary.final_cost);
+        PriorResiduals::Residuals r;
+        prior.Evaluate(of_center, &r, nullptr);
+        EXPECT_NEAR(Cost(residuals, kind, 1.5, of_center) + 0.25 * r.squaredNorm(),
+                    2.0 * summary.final_cost, 1e-6 * summary.final_cost);
       }
     }
+  }
+}
+
+// The unit is the weight of the prior: a length that pixels do not know is the prior's.
+TEST(SmallEngine, MinimizesWithThePrior) {
+  SceneOptions options;  // intra-camera matches, which hardly determine |t|
+  const FramePair pair = ScenePair(options, 4);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  MotionPrior stated;
+  stated.distance = 3.0 * pair.truth->t.norm();
+  stated.distance_sigma = 1e-4;
+  PriorParts parts;
+  parts.distance = true;
+  const PriorResiduals prior(stated, parts, *pair.truth);
+  SmallEngine engine(matches);
+  LeastSquaresOptions small;
+  small.max_num_iterations = 100;
+  small.tolerance = 1e-14;
+  Pose strong = *pair.truth, weak = *pair.truth;
+  ASSERT_TRUE(engine.Minimize(small, AllOf(matches), prior, 0.5, &strong));
+  EXPECT_NEAR(strong.t.norm(), *stated.distance, 1e-3);
+  ASSERT_TRUE(engine.Minimize(small, AllOf(matches), prior, 1e-9, &weak));
+  EXPECT_LT(weak.t.norm(), 2.0 * pair.truth->t.norm());
+}
+
+// A length that nothing but a far prior knows ends at the limit.
+TEST(SmallEngine, LimitsTheLength) {
+  SceneOptions options;
+  options.rotation_deg = 0.0;
+  const FramePair pair = ScenePair(options, 5);
+  const GroupedMatches matches(pair.rig, pair.matches);
+  LeastSquaresOptions small;
+  small.max_num_iterations = 100;
+  const double length = pair.truth->t.norm();
+  for (const double factor : {1e-6, 1e6}) {
+    PriorParts parts;
+    parts.typical_length = factor * length;
+    const PriorResiduals prior(MotionPrior(), parts, *pair.truth);
+    SmallEngine engine(matches);
+    small.limits_length = true;
+    Pose limited = *pair.truth;
+    ASSERT_TRUE(engine.Minimize(small, AllOf(matches), prior, 0.5, &limited));
+    EXPECT_GE(limited.t.norm(), 0.25 * length * (1.0 - 1e-9));
+    EXPECT_LE(limited.t.norm(), 1000.0 * length * (1.0 + 1e-9));
+    small.limits_length = false;
+    Pose free = *pair.truth;
+    ASSERT_TRUE(engine.Minimize(small, AllOf(matches), prior, 0.5, &free));
+    EXPECT_NEAR(std::log(free.t.norm() / (factor * length)), 0.0, 1.0);
   }
 }
 
@@ -121,7 +185,7 @@ TEST(SmallEngine, ATruncatedLossIgnoresOutliers) {
     const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
     SmallEngine engine(matches);
     const double cost = Cost(residuals, LossKind::kTruncated, 1.5, pose);
-    ASSERT_TRUE(engine.Minimize(LeastSquaresOptions(), AllOf(matches), &pose));
+    ASSERT_TRUE(Minimize(&engine, LeastSquaresOptions(), AllOf(matches), &pose));
     EXPECT_LT(Cost(residuals, LossKind::kTruncated, 1.5, pose), cost);
     EXPECT_NEAR(pose.R.determinant(), 1.0, 1e-12);
     after += RotationErrorDeg(*pair.truth, pose);
@@ -150,13 +214,13 @@ TEST(SmallEngine, LeavesOutWhatTheMaskLeavesOut) {
   small.max_num_iterations = 100;
   small.tolerance = 1e-14;
   Pose a = start, b = start, c = start;
-  ASSERT_TRUE(masked.Minimize(small, mask, &a));
-  ASSERT_TRUE(alone.Minimize(small, AllOf(fewer), &b));
-  ASSERT_TRUE(masked.Minimize(small, AllOf(all), &c));
+  ASSERT_TRUE(Minimize(&masked, small, mask, &a));
+  ASSERT_TRUE(Minimize(&alone, small, AllOf(fewer), &b));
+  ASSERT_TRUE(Minimize(&masked, small, AllOf(all), &c));
   EXPECT_LT(Difference(a, b).norm(), 1e-8);
   EXPECT_GT(Difference(a, c).norm(), 1e-4);
   Pose none = start;
-  EXPECT_FALSE(masked.Minimize(small, std::vector<char>(all.size(), 0), &none));
+  EXPECT_FALSE(Minimize(&masked, small, std::vector<char>(all.size(), 0), &none));
   EXPECT_EQ(none.t, start.t);
 }
 
@@ -170,14 +234,14 @@ TEST(SmallEngine, KeepsNothingFromCallToCall) {
   const EpipolarResiduals residuals(matches, ResidualKind::kSampson);
   SmallEngine engine(matches);
   Pose first = start;
-  ASSERT_TRUE(engine.Minimize(LeastSquaresOptions(), AllOf(matches), &first));
+  ASSERT_TRUE(Minimize(&engine, LeastSquaresOptions(), AllOf(matches), &first));
   LeastSquaresOptions other;
-  other.inverse_scale = true;
+  other.limits_length = true;
   other.loss = LossKind::kHuber;
   Pose elsewhere = StartNear(*pair.truth, 0.5, 0.2, &random);
-  engine.Minimize(other, AllOf(matches), &elsewhere);
+  Minimize(&engine, other, AllOf(matches), &elsewhere);
   Pose again = start;
-  ASSERT_TRUE(engine.Minimize(LeastSquaresOptions(), AllOf(matches), &again));
+  ASSERT_TRUE(Minimize(&engine, LeastSquaresOptions(), AllOf(matches), &again));
   EXPECT_EQ(first.R, again.R);
   EXPECT_EQ(first.t, again.t);
 }
@@ -191,7 +255,7 @@ TEST(SmallEngine, SaysSoAndLeavesThePoseIfNothingImproves) {
   SmallEngine engine(matches);
   const auto expect_unchanged = [&](const LeastSquaresOptions& small, const Pose& start) {
     Pose pose = start;
-    EXPECT_FALSE(engine.Minimize(small, AllOf(matches), &pose));
+    EXPECT_FALSE(Minimize(&engine, small, AllOf(matches), &pose));
     // By bytes, so that NaN equals NaN.
     EXPECT_EQ(std::memcmp(pose.R.data(), start.R.data(), sizeof(double) * 9), 0);
     EXPECT_EQ(std::memcmp(pose.t.data(), start.t.data(), sizeof(double) * 3), 0);
@@ -207,21 +271,22 @@ TEST(SmallEngine, SaysSoAndLeavesThePoseIfNothingImproves) {
   narrow.loss_scale = 1e-9;
   expect_unchanged(narrow, away);
 
-  LeastSquaresOptions inverse;
-  inverse.inverse_scale = true;
+  LeastSquaresOptions limited;
+  limited.limits_length = true;
   Pose still = *pair.truth;
   still.t.setZero();
-  expect_unchanged(inverse, still);
+  expect_unchanged(LeastSquaresOptions(), still);
+  expect_unchanged(limited, still);
 
   Pose nan = *pair.truth;
   nan.t.x() = std::numeric_limits<double>::quiet_NaN();
   expect_unchanged(LeastSquaresOptions(), nan);
-  expect_unchanged(inverse, nan);
+  expect_unchanged(limited, nan);
 
   const GroupedMatches empty(pair.rig, {});
   SmallEngine idle(empty);
   Pose pose = *pair.truth;
-  EXPECT_FALSE(idle.Minimize(LeastSquaresOptions(), {}, &pose));
+  EXPECT_FALSE(Minimize(&idle, LeastSquaresOptions(), {}, &pose));
   EXPECT_EQ(pose.t, pair.truth->t);
 }
 

@@ -71,7 +71,7 @@ TEST(Uncertainty, CovarianceMatchesTheErrorsOfRefinedMotions) {
       refine.loss = LossKind::kNone;
       refine.noise_px = options.noise_px;
       refine.threshold_px = 5.0;  // no outliers: a cut would shrink the errors
-      refine.scale = scale_free ? ScaleMode::kFree : ScaleMode::kFixed;
+      refine.hold_distance = !scale_free;
       Pose pose = *pair.truth;
       const RefineSummary summary = Refine(refine, pair.rig, pair.matches, pair.prior, &pose);
       ASSERT_TRUE(summary.IsSolutionUsable()) << summary.message;
@@ -292,44 +292,6 @@ TEST(EpipoleWeights, AreOneHalfAtTheDistanceThatTheHeaderStates) {
   // E = 0: no match says anything.
   EpipoleWeights(grouped, Pose(), noise, &weights);
   EXPECT_EQ(weights, std::vector<double>(3, 0.0));
-}
-
-TEST(ReliableInformation, IsThatOfTheSampsonErrorsFarFromEpipoles) {
-  SceneOptions scene;
-  scene.motion = MotionPattern::kSideways;
-  const FramePair pair = ScenePair(scene, 1);
-  const GroupedMatches matches(pair.rig, pair.matches);
-  const std::vector<double> ones = OnesOf(matches);
-  const Matrix6d plain = SampsonInformation(matches, ones, *pair.truth) / 0.25;
-  const Matrix6d reliable = ReliableInformation(matches, ones, *pair.truth, 0.5);
-  EXPECT_LT((plain - reliable).norm(), 0.01 * plain.norm());
-}
-
-// Camera 0 at time 1 is where camera 1 is at time 2, but for a few millimetres: that pair's
-// baseline is noise, and so is what it says of t.
-TEST(ReliableInformation, LeavesOutABaselineThatIsNoise) {
-  SceneOptions scene;
-  scene.inter_share = 0.5;
-  const FramePair any = ScenePair(scene, 2);
-  Pose truth;
-  truth.R = ExpSO3(DegToRad(1.0) * Eigen::Vector3d::UnitY());
-  truth.t = any.rig.cameras[1].s - truth.R * any.rig.cameras[0].s + Eigen::Vector3d(2e-3, 0, 0);
-  const FramePair pair = ScenePair(scene, 2, truth);
-  const GroupedMatches matches(pair.rig, pair.matches);
-  const std::vector<double> ones = OnesOf(matches);
-  std::vector<double> others = ones;
-  for (const MatchGroup& group : matches.groups()) {
-    if (group.camera1 == 0 && group.camera2 == 1) {
-      std::fill(others.begin() + group.begin, others.begin() + group.begin + group.size, 0);
-    }
-  }
-  const Matrix6d all = ReliableInformation(matches, ones, truth, 0.5);
-  const Matrix6d without = ReliableInformation(matches, others, truth, 0.5);
-  EXPECT_LT((all - without).norm(), 1e-9 * without.norm());
-  const Matrix6d plain = SampsonInformation(matches, ones, truth) / 0.25;
-  const double plain_t = plain.bottomRightCorner<3, 3>().trace();
-  const double reliable_t = all.bottomRightCorner<3, 3>().trace();
-  EXPECT_GT(plain_t, 3.0 * reliable_t);
 }
 
 }  // namespace

@@ -30,8 +30,11 @@ TEST(Chance, AFewMoreThanExpectedAreNoMotionHoweverManyMatches) {
     pose.R = ExpSO3(0.3 * random.UnitVector3());
     pose.t = random.UnitVector3();
     const int expected = Inliers(matches, pose);
-    EXPECT_FALSE(ExceedsChance(matches, pose, static_cast<int>(1.2 * expected), kThresholdPx, 1e4));
-    EXPECT_TRUE(ExceedsChance(matches, pose, 4 * expected, kThresholdPx, 1e4));
+    const auto exceeds = [&](int inliers) {
+      return ExceedsChance(matches, pose, inliers, matches.size(), kThresholdPx, 1e4);
+    };
+    EXPECT_FALSE(exceeds(static_cast<int>(1.2 * expected)));
+    EXPECT_TRUE(exceeds(4 * expected));
   }
 }
 

@@ -20,6 +20,11 @@ SceneOptions Scene() {
   return scene;
 }
 
+// Without a prior on the length, and with no other lengths to try.
+bool Search(const GroupedMatches& matches, Pose* pose) {
+  return SearchScale(matches, 1.5, 0.5, PriorResiduals(), {}, pose);
+}
+
 // Without the search one pair in twenty of this poor solver (its bias here is some degrees) ends
 // with |t| beyond any distance and a direction that is off by ten times its standard deviation.
 TEST(ScaleSearch, NoEstimateRunsAway) {
@@ -51,7 +56,7 @@ TEST(ScaleSearch, FindsTheWayBackFromInfinity) {
     Random random = Random::Stream(3, index);
     Pose pose = StartNear(*pair.truth, 0.2, 0.02, &random);
     pose.t *= 1e4;
-    EXPECT_TRUE(SearchScale(matches, 1.5, 0.5, &pose)) << index;
+    EXPECT_TRUE(Search(matches, &pose)) << index;
     found += std::abs(pose.t.norm() - 1.0) < 0.3;
   }
   std::printf("[ measured ] found %d of %d\n", found, kPairs);
@@ -63,12 +68,12 @@ TEST(ScaleSearch, LeavesWhatItCannotImprove) {
     const FramePair pair = ScenePair(Scene(), index);
     const GroupedMatches matches(pair.rig, pair.matches);
     Pose pose = *pair.truth;
-    SearchScale(matches, 1.5, 0.5, &pose);
+    Search(matches, &pose);
     EXPECT_NEAR(pose.t.norm(), 1.0, 0.3);
     // No translation, no direction to search along.
     pose.t.setZero();
     const Pose before = pose;
-    EXPECT_FALSE(SearchScale(matches, 1.5, 0.5, &pose));
+    EXPECT_FALSE(Search(matches, &pose));
     EXPECT_EQ(pose.t, before.t);
   }
 }

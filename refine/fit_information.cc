@@ -1,0 +1,275 @@
+#include "rigel/refine/fit_information.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include "rigel/refine/least_squares/loss.h"
+#include "rigel/refine/least_squares/noise_information.h"
+#include "rigel/refine/least_squares/normal_equations.h"
+#include "rigel/refine/least_squares/uncertainty.h"
+
+namespace rigel {
+namespace {
+
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+
+// v of a camera pair is that of all with the weight of so many matches.
+constexpr double kPooledWeight = 30.0;
+
+// D is a mean of slowly varying terms: so many matches give it to some percent. A third of a
+// microsecond each.
+constexpr int kNoiseSample = 200;
+constexpr int kMinSampled = 30;
+
+// Sums over inliers.
+struct LossSums {
+  double n = 0.0;
+  double squares = 0.0;  // of psi^2
+};
+
+double Psi(const FittedInliers& fit, double z) {
+  return z * LossWeight(fit.loss, fit.loss_scale_sigmas, z);
+}
+
+LossSums SumLoss(const FittedInliers& fit, const MatchGroup& group, const MatchErrors& errors,
+                 double sigma) {
+  LossSums sums;
+  for (int k = group.begin; k < group.begin + group.size; ++k) {
+    if (!(fit.factors[k] > 0)) continue;
+    const double psi = Psi(fit, std::sqrt(errors.squared[k]) / sigma);
+    sums.n += 1.0;
+    sums.squares += psi * psi;
+  }
+  return sums;
+}
+
+// The gradient of the cost at `pose`.
+Vector6d GradientAt(const FittedInliers& fit, const GroupedMatches& matches,
+                    const NoiseModel& noise, const Pose& pose) {
+  Vector6d sum = Vector6d::Zero();
+  for (size_t g = 0; g < matches.groups().size(); ++g) {
+    const MatchGroup& group = matches.groups()[g];
+    const double sigma = noise.sigma_of[g];
+    SampsonKernelOptions options;
+    options.loss = fit.loss;
+    options.loss_scale = fit.loss_scale_sigmas * sigma;
+    MotionNormalEquations equations;
+    AddNormalEquations(options, matches, group, matches.Pixels(group),
+                       fit.factors.data() + group.begin, pose, /*derivatives=*/true, &equations);
+    sum += equations.gradient / (sigma * sigma);
+  }
+  return sum;
+}
+
+// The curvature of the cost: differences of its gradient. It has the second derivatives of the
+// errors and the slope of the loss in it, for outliers too.
+Matrix6d CurvatureAt(const FittedInliers& fit, const GroupedMatches& matches,
+                     const NoiseModel& noise, const Pose& pose) {
+  constexpr double kStep = 1e-6;  // radians, and a fraction of |t|
+  const Vector6d gradient = GradientAt(fit, matches, noise, pose);
+  Matrix6d curvature;
+  for (int k = 0; k < 6; ++k) {
+    const double step = k < 3 ? kStep : kStep * pose.t.norm();
+    const Eigen::Vector3d shift = step * Eigen::Vector3d::Unit(k % 3);
+    Pose moved = pose;
+    if (k < 3) {
+      moved.R = ExpSO3(shift) * pose.R;
+    } else {
+      moved.t += shift;
+    }
+    curvature.col(k) = (GradientAt(fit, matches, noise, moved) - gradient) / step;
+  }
+  return 0.5 * (curvature + curvature.transpose());
+}
+
+// One row of the Jacobian times its weight, the factor of the match over sigma.
+struct WeightedRow {
+  double residual = 0.0;  // over sigma
+  Vector6d by_motion = Vector6d::Zero();
+  UnalignedMatrix<4> gradient = UnalignedMatrix<4>::Zero();  // by the pixels, without the weight
+};
+
+// The rows of the inliers; zero for other matches.
+class WeightedRows {
+ public:
+  WeightedRows(const FittedInliers& fit, const GroupedMatches& matches,
+               const std::vector<GroupLinearization>& linear, const NoiseModel& noise)
+      : rows_(matches.size()), group_of_(matches.size()) {
+    SampsonRow row;
+    for (size_t g = 0; g < matches.groups().size(); ++g) {
+      const MatchGroup& group = matches.groups()[g];
+      const PixelArrays p = matches.Pixels(group);
+      for (int i = 0; i < group.size; ++i) {
+        const int k = group.begin + i;
+        group_of_[k] = static_cast<int>(g);
+        if (!(fit.factors[k] > 0) || !DifferentiateSampsonOnce(linear[g], {p.x1[i], p.y1[i], 1.0},
+                                                               {p.x2[i], p.y2[i], 1.0}, &row)) {
+          continue;
+        }
+        const double weight = fit.factors[k] / noise.sigma_of[g];
+        rows_[k] = {row.residual / noise.sigma_of[g], weight * row.by_motion, row.gradient};
+      }
+    }
+  }
+
+  // What correlations add to the variance of the score: v (j k' + k j') rho for rows j and k that
+  // share a pixel, rho = dr_j/dp . dr_k/dp over that pixel.
+  Matrix6d SharedScatter(const std::vector<SharedPixel>& shared,
+                         const std::vector<double>& v) const {
+    Matrix6d sum = Matrix6d::Zero();
+    for (const SharedPixel& pair : shared) {
+      const WeightedRow& j = rows_[pair.first];
+      const WeightedRow& k = rows_[pair.second];
+      const int begin = pair.at_time2 ? 2 : 0;
+      const double correlation = j.gradient.segment<2>(begin).dot(k.gradient.segment<2>(begin)) *
+                                 std::sqrt(v[group_of_[pair.first]] * v[group_of_[pair.second]]);
+      const Eigen::Matrix<double, 6, 6> product = j.by_motion * k.by_motion.transpose();
+      sum += correlation * (product + product.transpose());
+    }
+    return sum;
+  }
+
+  // The same variance as it was measured: the sum of s s' over sets of matches that share pixels, s
+  // the sum of their scores. A residual of leverage h has 1 - h of its variance left.
+  Matrix6d MeasuredScatter(const FittedInliers& fit, const Matrix6d& covariance) const {
+    std::vector<int> first(rows_.size());
+    std::iota(first.begin(), first.end(), 0);
+    const auto find = [&first](int k) {
+      while (first[k] != k) k = first[k];
+      return k;
+    };
+    for (const SharedPixel& pair : fit.shared) {
+      const int j = find(pair.first);
+      const int k = find(pair.second);
+      first[std::max(j, k)] = std::min(j, k);
+    }
+    constexpr double kMaxLeverage = 0.99;
+    std::vector<Vector6d> scores(rows_.size(), Vector6d::Zero());
+    for (size_t k = 0; k < rows_.size(); ++k) {
+      const Vector6d& row = rows_[k].by_motion;
+      const double leverage = std::min(row.dot(covariance.lazyProduct(row)), kMaxLeverage);
+      scores[find(static_cast<int>(k))] +=
+          Psi(fit, rows_[k].residual) / std::sqrt(1.0 - leverage) * row;
+    }
+    Matrix6d sum = Matrix6d::Zero();
+    for (const Vector6d& score : scores) sum += score.lazyProduct(score.transpose());
+    return sum;
+  }
+
+ private:
+  std::vector<WeightedRow> rows_;
+  std::vector<int> group_of_;
+};
+
+// The scatter of the model has the right shape, and the measured one the right size, for noise that
+// is of another kind: errors that are alike in both cameras, or larger for near points. Half is
+// q times the model, where q is the mean ratio of the two, half is what was measured. With few
+// matches the model counts more.
+Matrix6d Blend(const Matrix6d& model, const Matrix6d& measured, double num_inliers) {
+  constexpr double kModelWeight = 300.0;  // matches
+  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> ldlt(model);
+  const Eigen::Matrix<double, 6, 6> ratio = ldlt.solve(Eigen::Matrix<double, 6, 6>(measured));
+  const double q = ratio.trace() / 6.0;
+  if (!std::isfinite(q) || !(q > 0)) return model;
+  const double share = num_inliers / (num_inliers + kModelWeight);
+  return (1.0 - share + 0.5 * share * q) * model + 0.5 * share * measured;
+}
+
+}  // namespace
+
+FitInformation InformationOfFit(const FittedInliers& fit, const GroupedMatches& matches,
+                                const MatchErrors& errors, const NoiseModel& noise,
+                                const Pose& pose) {
+  const size_t num_groups = matches.groups().size();
+  std::vector<LossSums> sums(num_groups);
+  LossSums all;
+  for (size_t g = 0; g < num_groups; ++g) {
+    sums[g] = SumLoss(fit, matches.groups()[g], errors, noise.sigma_of[g]);
+    all.n += sums[g].n;
+    all.squares += sums[g].squares;
+  }
+  // Residuals of a fit are smaller than the noise: n - p instead of n.
+  const double redundancy = std::max(all.n - fit.num_parameters, 1.0);
+  const double v_all = all.squares / redundancy;
+  const MotionBasis basis = FullBasis(pose, true);
+  std::vector<GroupLinearization> linear;
+  LinearizeGroups(matches, ResidualKind::kSampson, pose, &basis, &linear);
+  FitInformation information;
+  std::vector<double> v_of(num_groups, 1.0);
+  for (size_t g = 0; g < num_groups; ++g) {
+    if (!(sums[g].n > 0)) continue;
+    const MatchGroup& group = matches.groups()[g];
+    const double* factors = fit.factors.data() + group.begin;
+    if (!fit.noise_is_given) {
+      v_of[g] = (sums[g].squares * all.n / redundancy + kPooledWeight * v_all) /
+                (sums[g].n + kPooledWeight);
+    }
+    MotionNormalEquations equations;
+    AddNormalEquations(SampsonKernelOptions(), matches, group, matches.Pixels(group), factors, pose,
+                       /*derivatives=*/true, &equations);
+    const Matrix6d H = equations.curvature / (noise.sigma_of[g] * noise.sigma_of[g]);
+    information.observed += H;
+    information.scatter += v_of[g] * H;
+    information.noise +=
+        NoiseInformation(linear[g], matches.Pixels(group), factors,
+                         std::max(kMinSampled, kNoiseSample * group.size / matches.size()));
+  }
+  // With a given noise and no shared pixel the scatter is known.
+  if (!fit.noise_is_given || !fit.shared.empty()) {
+    const WeightedRows rows(fit, matches, linear, noise);
+    information.scatter += rows.SharedScatter(fit.shared, v_of);
+    Matrix6d covariance;
+    if (!fit.noise_is_given && CovarianceOfBasis(information.observed, basis, &covariance)) {
+      information.scatter =
+          Blend(information.scatter, rows.MeasuredScatter(fit, covariance), all.n);
+    }
+  }
+  information.curvature = fit.is_minimum && !fit.noise_is_given
+                              ? CurvatureAt(fit, matches, noise, pose)
+                              : Matrix6d(information.observed - information.noise);
+  return information;
+}
+
+namespace {
+
+// Eigenvalues of `part` against `whole` within the basis, ascending. False if `whole` is singular
+// there.
+bool CompareWithin(const MotionBasis& basis, const Matrix6d& part, const Matrix6d& whole,
+                   Eigen::GeneralizedSelfAdjointEigenSolver<Square>* eigen) {
+  Matrix6d unused;
+  if (basis.cols() == 0 || !CovarianceOfBasis(whole, basis, &unused)) return false;
+  eigen->compute(basis.transpose() * part * basis, basis.transpose() * whole * basis);
+  return eigen->info() == Eigen::Success && eigen->eigenvalues().allFinite();
+}
+
+}  // namespace
+
+bool CovarianceOfFit(const FitInformation& information, const Matrix6d& prior,
+                     const MotionBasis& basis, double min_share, Matrix6d* covariance) {
+  // W'(observed) W = I and W' S W = diag(shares).
+  Eigen::GeneralizedSelfAdjointEigenSolver<Square> eigen;
+  if (!CompareWithin(basis, information.curvature + prior, information.observed + prior, &eigen)) {
+    return false;
+  }
+  const Square W = eigen.eigenvectors();
+  const Square shares =
+      eigen.eigenvalues().cwiseMax(min_share).cwiseMin(1.0).cwiseInverse().asDiagonal();
+  const Square inverse = W * shares * W.transpose();
+  const Square scatter = basis.transpose() * (information.scatter + prior) * basis;
+  *covariance = basis * (inverse * scatter * inverse) * basis.transpose();
+  return covariance->allFinite();
+}
+
+double TrueInformation(const FitInformation& information, const Matrix6d& prior,
+                       const MotionBasis& basis) {
+  Eigen::GeneralizedSelfAdjointEigenSolver<Square> eigen;
+  const Matrix6d whole = information.observed + prior;
+  return CompareWithin(basis, whole - information.noise, whole, &eigen) ? eigen.eigenvalues()(0)
+                                                                        : 0.0;
+}
+
+}  // namespace rigel

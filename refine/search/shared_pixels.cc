@@ -1,0 +1,172 @@
+#include "rigel/refine/search/shared_pixels.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace rigel {
+namespace {
+
+struct ImagePoint {
+  int camera;
+  double u, v;
+
+  bool operator==(const ImagePoint& other) const {
+    return camera == other.camera && u == other.u && v == other.v;
+  }
+};
+
+ImagePoint PointOf(const Match& match, bool at_time2) {
+  const Pixel& p = at_time2 ? match.pixel2 : match.pixel1;
+  return {at_time2 ? match.camera2 : match.camera1, p.x(), p.y()};
+}
+
+size_t Hash(const ImagePoint& p) {
+  constexpr uint64_t kFactor = 0x9e3779b97f4a7c15;  // the golden ratio times 2^64: spreads bits
+  // -0.0 and 0.0 are one place.
+  const double u = p.u + 0.0, v = p.v + 0.0;
+  uint64_t bits_u, bits_v;
+  std::memcpy(&bits_u, &u, sizeof u);
+  std::memcpy(&bits_v, &v, sizeof v);
+  uint64_t h = (bits_u + static_cast<uint64_t>(p.camera)) * kFactor;
+  h = ((h ^ (h >> 32)) + bits_v) * kFactor;
+  return static_cast<size_t>(h ^ (h >> 29));
+}
+
+// Sets of matches with the same point at one of the times: a table from points to their first
+// match, and chains from match to match.
+class SamePoints {
+ public:
+  SamePoints(const std::vector<Match>& matches, bool at_time2)
+      : next_(matches.size(), -1), last_(matches.size(), -1) {
+    size_t size = 16;
+    while (size < 2 * matches.size()) size *= 2;
+    std::vector<int> table(size, -1);
+    for (size_t k = 0; k < matches.size(); ++k) {
+      const ImagePoint point = PointOf(matches[k], at_time2);
+      size_t place = Hash(point) & (size - 1);
+      while (table[place] >= 0 && !(PointOf(matches[table[place]], at_time2) == point)) {
+        place = (place + 1) & (size - 1);
+      }
+      const int row = static_cast<int>(k);
+      int& first = table[place];
+      if (first < 0) {
+        first = row;
+      } else {
+        if (last_[first] < 0) firsts_.push_back(first);
+        next_[last_[first] < 0 ? first : last_[first]] = row;
+        last_[first] = row;
+      }
+    }
+  }
+
+  // The first match of each set of at least two.
+  const std::vector<int>& firsts() const { return firsts_; }
+  // The match of the set after k, -1 at the end. Ascending.
+  int Next(int k) const { return next_[k]; }
+
+ private:
+  std::vector<int> next_, last_, firsts_;
+};
+
+// Among the matches of one point: repeats name the first of their kind, and if more than
+// kMaxPartners different partners are in one image, those count for nothing.
+void JudgePartners(const std::vector<Match>& matches, const std::vector<int>& rows, bool at_time2,
+                   std::vector<int>* first_of) {
+  std::vector<int> different;
+  std::map<int, int> partners;  // by camera; not counted further than it matters
+  for (const int row : rows) {
+    const ImagePoint partner = PointOf(matches[row], !at_time2);
+    int& in_image = partners[partner.camera];
+    if (in_image > kMaxPartners) continue;
+    const auto same = std::find_if(different.begin(), different.end(), [&](int other) {
+      return PointOf(matches[other], !at_time2) == partner;
+    });
+    if (same == different.end()) {
+      different.push_back(row);
+      ++in_image;
+    } else {
+      (*first_of)[row] = (*first_of)[*same];
+    }
+  }
+  for (const int row : rows) {
+    if (partners[PointOf(matches[row], !at_time2).camera] > kMaxPartners) (*first_of)[row] = -1;
+  }
+}
+
+}  // namespace
+
+std::vector<size_t> DistinctMatches(const std::vector<Match>& matches, std::vector<int>* first_of) {
+  first_of->resize(matches.size());
+  std::iota(first_of->begin(), first_of->end(), 0);
+  std::vector<int> rows_of_point;
+  for (const bool at_time2 : {false, true}) {
+    const SamePoints same(matches, at_time2);
+    for (const int first : same.firsts()) {
+      rows_of_point.clear();
+      for (int k = first; k >= 0; k = same.Next(k)) rows_of_point.push_back(k);
+      JudgePartners(matches, rows_of_point, at_time2, first_of);
+    }
+  }
+  std::vector<size_t> rows;
+  rows.reserve(matches.size());
+  for (size_t k = 0; k < matches.size(); ++k) {
+    if ((*first_of)[k] == static_cast<int>(k)) rows.push_back(k);
+  }
+  return rows;
+}
+
+std::vector<SharedPixel> FindSharedPixels(const GroupedMatches& matches) {
+  std::vector<SharedPixel> shared;
+  for (const bool at_time2 : {false, true}) {
+    const SamePoints same(matches.matches(), at_time2);
+    for (const int first : same.firsts()) {
+      for (int j = first; j >= 0; j = same.Next(j)) {
+        for (int k = same.Next(j); k >= 0; k = same.Next(k)) shared.push_back({j, k, at_time2});
+      }
+    }
+  }
+  return shared;
+}
+
+std::vector<SharedPixel> SharedWithin(const std::vector<SharedPixel>& shared,
+                                      const std::vector<char>& mask) {
+  std::vector<SharedPixel> within;
+  std::copy_if(shared.begin(), shared.end(), std::back_inserter(within),
+               [&](const SharedPixel& pair) { return mask[pair.first] && mask[pair.second]; });
+  return within;
+}
+
+int ResolveCompetition(const GroupedMatches& matches, const std::vector<SharedPixel>& shared,
+                       const std::vector<double>& squared_errors, std::vector<char>* inliers) {
+  int cleared = 0;
+  for (const SharedPixel& pair : shared) {
+    const Match& a = matches.matches()[pair.first];
+    const Match& b = matches.matches()[pair.second];
+    const bool one_image = pair.at_time2 ? a.camera1 == b.camera1 : a.camera2 == b.camera2;
+    if (!one_image || !(*inliers)[pair.first] || !(*inliers)[pair.second]) continue;
+    const bool first_is_worse = squared_errors[pair.first] > squared_errors[pair.second];
+    (*inliers)[first_is_worse ? pair.first : pair.second] = 0;
+    ++cleared;
+  }
+  return cleared;
+}
+
+int CountDistinctPixels(int num_matches, const std::vector<SharedPixel>& shared) {
+  // Of k matches of one point k - 1 follow another.
+  int following[2] = {0, 0};
+  std::vector<char> seen[2];
+  for (const SharedPixel& pair : shared) {
+    std::vector<char>& at = seen[pair.at_time2 ? 1 : 0];
+    if (at.size() <= static_cast<size_t>(pair.second)) at.resize(pair.second + 1, 0);
+    following[pair.at_time2 ? 1 : 0] += at[pair.second] ? 0 : 1;
+    at[pair.second] = 1;
+  }
+  return num_matches - std::max(following[0], following[1]);
+}
+
+}  // namespace rigel
