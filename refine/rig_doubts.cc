@@ -91,6 +91,65 @@ std::optional<int> InliersIfSwapped(const FramePair& pair, int num_inliers, cons
   return best;
 }
 
+// What the camera pairs with enough rows have in common.
+struct FitSurvey {
+  double most = 0.0;  // largest share that fits
+  int inter_inliers = 0;
+  std::optional<Cameras> most_rows;  // between two cameras
+};
+
+FitSurvey Survey(const std::map<Cameras, Fit>& fits) {
+  FitSurvey survey;
+  for (const auto& [cameras, fit] : fits) {
+    if (fit.rows < kMinDoubtRows) continue;
+    survey.most = std::max(survey.most, fit.Share());
+    if (cameras.first == cameras.second) continue;
+    survey.inter_inliers += fit.inliers;
+    if (!survey.most_rows || fit.rows > fits.at(*survey.most_rows).rows) {
+      survey.most_rows = cameras;
+    }
+  }
+  return survey;
+}
+
+RigDoubt FewFitDoubt(const Cameras& cameras, const Fit& fit) {
+  const bool intra = cameras.first == cameras.second;
+  const std::string name =
+      intra ? "camera " + std::to_string(cameras.first)
+            : "cameras " + std::to_string(cameras.first) + "-" + std::to_string(cameras.second);
+  return {
+      RigDoubtKind::kFewFit, cameras.first, cameras.second,
+      name + ": " + CountOf(fit) +
+          (intra ? "; is it swapped with another, is its quaternion x y z w, are its intrinsics "
+                   "another's, or are these matches wrong?"
+                 : "; are they swapped, is a quaternion x y z w, or are these matches wrong?")};
+}
+
+// Adds a doubt for each camera pair of which few matches fit. Returns the cameras that may be
+// swapped: those of such pairs, and two cameras that no match connects.
+std::vector<Cameras> DoubtFewFits(const std::map<Cameras, Fit>& fits, double most,
+                                  const std::vector<int>& frozen, std::vector<RigDoubt>* doubts) {
+  const auto is_frozen = [&](int camera) {
+    return std::find(frozen.begin(), frozen.end(), camera) != frozen.end();
+  };
+  std::vector<Cameras> to_swap;
+  std::vector<int> few_by_themselves;
+  for (const auto& [cameras, fit] : fits) {
+    const bool few = fit.rows >= kMinDoubtRows && most >= kMostFit && fit.Share() < kFewFit * most;
+    if (!few || is_frozen(cameras.first) || is_frozen(cameras.second)) continue;
+    doubts->push_back(FewFitDoubt(cameras, fit));
+    if (cameras.first != cameras.second) {
+      to_swap.push_back(cameras);
+      continue;
+    }
+    for (const int other : few_by_themselves) {
+      if (fits.count({other, cameras.first}) == 0) to_swap.emplace_back(other, cameras.first);
+    }
+    few_by_themselves.push_back(cameras.first);
+  }
+  return to_swap;
+}
+
 }  // namespace
 
 std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, bool length_is_open,
@@ -99,56 +158,20 @@ std::vector<RigDoubt> FindRigDoubts(const FramePair& pair, bool length_is_open,
   const std::vector<int> frozen = FrozenCameras(pair);
   std::vector<RigDoubt> doubts;
   doubts.reserve(frozen.size());
-  const auto is_frozen = [&](int camera) {
-    return std::find(frozen.begin(), frozen.end(), camera) != frozen.end();
-  };
   for (const int k : frozen) {
     doubts.push_back({RigDoubtKind::kFrozen, k, k,
                       "camera " + std::to_string(k) +
                           " shows the same image twice while others move: is it frozen?"});
   }
-  std::map<Cameras, Fit> fits = FitsOf(refine);
-  double most = 0.0;
-  int inter_inliers = 0;
-  std::optional<Cameras> most_rows;  // between two cameras
-  for (const auto& [cameras, fit] : fits) {
-    if (fit.rows < kMinDoubtRows) continue;
-    most = std::max(most, fit.Share());
-    if (cameras.first == cameras.second) continue;
-    inter_inliers += fit.inliers;
-    if (!most_rows || fit.rows > fits[*most_rows].rows) most_rows = cameras;
-  }
+  const std::map<Cameras, Fit> fits = FitsOf(refine);
+  const FitSurvey survey = Survey(fits);
   std::vector<Cameras> to_swap;
-  std::vector<int> few_by_themselves;
-  for (const auto& [cameras, fit] : fits) {
-    if (prior_is_doubted) break;
-    const bool few = fit.rows >= kMinDoubtRows && most >= kMostFit && fit.Share() < kFewFit * most;
-    if (!few || is_frozen(cameras.first) || is_frozen(cameras.second)) continue;
-    const bool intra = cameras.first == cameras.second;
-    const std::string name =
-        intra ? "camera " + std::to_string(cameras.first)
-              : "cameras " + std::to_string(cameras.first) + "-" + std::to_string(cameras.second);
-    doubts.push_back(
-        {RigDoubtKind::kFewFit, cameras.first, cameras.second,
-         name + ": " + CountOf(fit) +
-             (intra ? "; is it swapped with another, is its quaternion x y z w, are its intrinsics "
-                      "another's, or are these matches wrong?"
-                    : "; are they swapped, is a quaternion x y z w, or are these matches wrong?")});
-    if (!intra) {
-      to_swap.push_back(cameras);
-      continue;
-    }
-    // Also two cameras that no match connects.
-    for (const int other : few_by_themselves) {
-      if (fits.count({other, cameras.first}) == 0) to_swap.emplace_back(other, cameras.first);
-    }
-    few_by_themselves.push_back(cameras.first);
-  }
-  const bool length_is_missing = refine.IsSolutionUsable() && refine.RigDirectionKnown() &&
-                                 !refine.scale_observable && length_is_open &&
-                                 refine.camera_pairs.size() > 1 && inter_inliers >= kMinDoubtRows &&
-                                 10 * inter_inliers >= refine.num_inliers;
-  if (to_swap.empty() && length_is_missing && frozen.empty()) to_swap.push_back(*most_rows);
+  if (!prior_is_doubted) to_swap = DoubtFewFits(fits, survey.most, frozen, &doubts);
+  const bool length_is_missing =
+      refine.IsSolutionUsable() && refine.RigDirectionKnown() && !refine.scale_observable &&
+      length_is_open && refine.camera_pairs.size() > 1 && survey.inter_inliers >= kMinDoubtRows &&
+      10 * survey.inter_inliers >= refine.num_inliers;
+  if (to_swap.empty() && length_is_missing && frozen.empty()) to_swap.push_back(*survey.most_rows);
   // One swapped pair makes matches of other pairs fit badly too, so three pairs are enough to try.
   constexpr size_t kMaxSwaps = 3;
   for (size_t k = 0; k < std::min(to_swap.size(), kMaxSwaps); ++k) {

@@ -33,7 +33,8 @@ rigel::Pixel Project(const rigel::RigCamera& camera, const Eigen::Vector3d& X_bo
 std::vector<rigel::Match> Matches(const rigel::Rig& rig, const rigel::Pose& truth) {
   std::vector<rigel::Match> matches;
   for (int k = 0; k < 120; ++k) {
-    const Eigen::Vector3d X1(12 + 5 * (k % 5), -6 + 3 * (k / 5 % 5), 4 - k / 25);
+    const int column = k % 5, row = k / 5 % 5, layer = k / 25;
+    const Eigen::Vector3d X1(12 + 5 * column, -6 + 3 * row, 4 - layer);
     rigel::Match match;
     match.camera1 = k % 2;
     match.pixel1 = Project(rig.cameras[match.camera1], X1);

@@ -72,27 +72,55 @@ std::vector<SampsonRow> RowsOf(const Rig& rig, const std::vector<Match>& matches
   return rows;
 }
 
-// Adds the matches `set`, which are linked by the pixels they share (as measured), with the inverse
-// of the correlation S of their errors as weight. Where S has no rank, errors follow from others
-// and add nothing: those of a repeated match.
+// The correlation of the errors of the matches `set`, by the pixels they share (as measured).
+Eigen::MatrixXd CorrelationOf(const std::vector<Match>& measured,
+                              const std::vector<SampsonRow>& rows, const std::vector<int>& set) {
+  const auto n = static_cast<int>(set.size());
+  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n, n);
+  for (int i = 0; i < n; ++i) {
+    const UnalignedMatrix<4>& gradient = rows[set[i]].gradient;
+    for (int j = 0; j < n; ++j) {
+      const UnalignedMatrix<4>& other = rows[set[j]].gradient;
+      const Match &a = measured[set[i]], &b = measured[set[j]];
+      if (SharePixel1(a, b)) S(i, j) += gradient.head<2>().dot(other.head<2>());
+      if (SharePixel2(a, b)) S(i, j) += gradient.tail<2>().dot(other.tail<2>());
+    }
+  }
+  return S;
+}
+
+// Adds what one coordinate of the pixels makes of the information: each pixel once, as it changes
+// the rows of all matches that have it.
+void AddLinkedNoise(const std::vector<Match>& measured, const std::vector<SampsonRow>& rows,
+                    const std::vector<int>& set, int coordinate, const Eigen::MatrixXd& whiten,
+                    Matrix6d* noise) {
+  const auto share = coordinate < 2 ? SharePixel1 : SharePixel2;
+  const auto n = static_cast<int>(set.size());
+  std::vector<char> seen(n, 0);
+  for (int i = 0; i < n; ++i) {
+    if (seen[i]) continue;
+    Eigen::MatrixXd change = Eigen::MatrixXd::Zero(6, n);
+    for (int j = i; j < n; ++j) {
+      if (!share(measured[set[i]], measured[set[j]])) continue;
+      seen[j] = 1;
+      change.col(j) = rows[set[j]].by_motion_and_pixels.col(coordinate);
+    }
+    const Eigen::MatrixXd white = change * whiten;
+    *noise += white * white.transpose();
+  }
+}
+
+// Adds the matches `set`, which are linked by the pixels they share, with the inverse of the
+// correlation of their errors as weight. Where that has no rank, errors follow from others and add
+// nothing: those of a repeated match.
 void AddLinked(const std::vector<Match>& measured, const std::vector<SampsonRow>& rows,
                const std::vector<int>& set, double variance, MatchInformation* information) {
   // Of a correlation matrix: far above the rounding of a zero.
   constexpr double kMinEigenvalue = 1e-6;
   const auto n = static_cast<int>(set.size());
-  Eigen::MatrixXd S(n, n), J(6, n);
-  for (int i = 0; i < n; ++i) {
-    const SampsonRow& row = rows[set[i]];
-    J.col(i) = row.by_motion;
-    for (int j = 0; j < n; ++j) {
-      const SampsonRow& other = rows[set[j]];
-      const Match &a = measured[set[i]], &b = measured[set[j]];
-      S(i, j) = 0.0;
-      if (SharePixel1(a, b)) S(i, j) += row.gradient.head<2>().dot(other.gradient.head<2>());
-      if (SharePixel2(a, b)) S(i, j) += row.gradient.tail<2>().dot(other.gradient.tail<2>());
-    }
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(S);
+  Eigen::MatrixXd J(6, n);
+  for (int i = 0; i < n; ++i) J.col(i) = rows[set[i]].by_motion;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(CorrelationOf(measured, rows, set));
   Eigen::VectorXd scale(n);
   for (int i = 0; i < n; ++i) {
     const double value = eigen.eigenvalues()(i);
@@ -101,21 +129,8 @@ void AddLinked(const std::vector<Match>& measured, const std::vector<SampsonRow>
   const Eigen::MatrixXd whiten = eigen.eigenvectors() * scale.asDiagonal();
   const Eigen::MatrixXd white = J * whiten;
   information->sum += white * white.transpose() / variance;
-  // Each coordinate of each pixel once: it changes the rows of all matches that have the pixel.
   for (int coordinate = 0; coordinate < 4; ++coordinate) {
-    const auto share = coordinate < 2 ? SharePixel1 : SharePixel2;
-    for (int i = 0; i < n; ++i) {
-      const auto is_same = [&](int j) { return share(measured[set[i]], measured[set[j]]); };
-      bool seen = false;
-      for (int j = 0; j < i && !seen; ++j) seen = is_same(j);
-      if (seen) continue;
-      Eigen::MatrixXd change = Eigen::MatrixXd::Zero(6, n);
-      for (int j = i; j < n; ++j) {
-        if (is_same(j)) change.col(j) = rows[set[j]].by_motion_and_pixels.col(coordinate);
-      }
-      const Eigen::MatrixXd white_change = change * whiten;
-      information->noise += white_change * white_change.transpose();
-    }
+    AddLinkedNoise(measured, rows, set, coordinate, whiten, &information->noise);
   }
 }
 

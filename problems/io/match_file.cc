@@ -199,21 +199,24 @@ class Parser : private MatchLines {
     return false;
   }
 
+  // Always false.
+  bool UnknownKeyword(bool has_format) {
+    if (!has_format) {
+      return Fail(Quoted(Column(0)) + ", expected a match file with a line '" +
+                  std::string(kKeywords[kFormat].usage) + "'");
+    }
+    std::string names;
+    for (const Keyword& keyword : kKeywords) {
+      names += (names.empty() ? "" : ", ") + std::string(keyword.name);
+    }
+    return Fail("unknown keyword " + Quoted(Column(0)) + ", expected one of " + names);
+  }
+
   bool ParseHeader() {
     std::array<int64_t, kNumKeywords> seen{};  // line of each keyword
     while (NextLine()) {
       const int id = FindKeyword(Column(0));
-      if (id < 0) {
-        if (seen[kFormat] == 0) {
-          return Fail(Quoted(Column(0)) + ", expected a match file with a line '" +
-                      std::string(kKeywords[kFormat].usage) + "'");
-        }
-        std::string names;
-        for (const Keyword& keyword : kKeywords) {
-          names += (names.empty() ? "" : ", ") + std::string(keyword.name);
-        }
-        return Fail("unknown keyword " + Quoted(Column(0)) + ", expected one of " + names);
-      }
+      if (id < 0) return UnknownKeyword(seen[kFormat] > 0);
       const Keyword& keyword = kKeywords[id];
       if (seen[id] > 0 && id != kCamera) {
         return Fail("'" + std::string(keyword.name) +

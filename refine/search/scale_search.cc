@@ -28,7 +28,6 @@ constexpr size_t kPolished = 3;
 constexpr double kInReach = 0.1;
 
 struct Candidate {
-  double length = 0.0;  // the start's
   double score = 0.0;
   Pose motion;
 };
@@ -44,98 +43,141 @@ double ShortestLength(const GroupedMatches& matches, const Eigen::Matrix3d& R) {
   return shortest;
 }
 
-}  // namespace
+class LengthSearch {
+ public:
+  LengthSearch(const GroupedMatches& matches, double threshold_px, double noise_px,
+               const PriorResiduals& prior, const Pose& start)
+      : matches_(matches),
+        threshold_px_(threshold_px),
+        noise_px_(noise_px),
+        prior_(prior),
+        start_(start),
+        direction_(start.t.normalized()),
+        subset_(matches.EvenSubset(kSubset)),
+        coarse_(matches.EvenSubset(kCoarseSubset)),
+        engine_(subset_),
+        coarse_engine_(coarse_) {}
 
-bool SearchScale(const GroupedMatches& matches, double threshold_px, double noise_px,
-                 const PriorResiduals& prior, const std::vector<double>& more_lengths, Pose* pose) {
-  const double norm = pose->t.norm();
-  double length = ShortestLength(matches, pose->R);
-  if (!(norm > 0) || !(length > 0)) return false;
-  const Eigen::Vector3d direction = pose->t / norm;
-  const GroupedMatches subset = matches.EvenSubset(kSubset);
-  const GroupedMatches coarse = matches.EvenSubset(kCoarseSubset);
-  SmallEngine engine(subset), coarse_engine(coarse);
-  std::vector<double> errors;
-  std::vector<char> mask;
-  const std::vector<double> all(coarse.size(), 1.0);
+  // The best motion that was found.
+  Pose Run(const std::vector<double>& more_lengths) {
+    const std::vector<double> lengths = Lengths(more_lengths);
+    const double start_score = ScoreOf(subset_, start_);
+    Candidate longest = FromLength(lengths.back());
+    Polish(&longest);
+    std::vector<Candidate> candidates;
+    // If the longest fits as well as the start, the arms do not determine |t|: the others are
+    // skipped.
+    const bool within = lengths.size() > 1 && start_.t.norm() <= lengths[lengths.size() - 2];
+    if (!within || std::abs(start_score - longest.score) >= Outlier()) {
+      for (size_t k = 0; k + 1 < lengths.size(); ++k) candidates.push_back(FromLength(lengths[k]));
+    }
+    PolishBest(&candidates);
+    candidates.push_back(longest);
+    candidates.push_back({start_score, start_});
+    SortByScore(&candidates);
+    const Pose found = candidates[0].motion;
+    // The best of the subset must not be worse for all matches.
+    return ScoreOf(matches_, found) < ScoreOf(matches_, start_) ? found : start_;
+  }
+
+ private:
+  double Outlier() const { return threshold_px_ * threshold_px_; }
+
+  static void SortByScore(std::vector<Candidate>* candidates) {
+    std::stable_sort(candidates->begin(), candidates->end(),
+                     [](const Candidate& x, const Candidate& y) { return x.score < y.score; });
+  }
 
   // The shortest first. The last is so long that the arms do not matter.
-  std::vector<double> lengths;
-  const double share = coarse.size() / static_cast<double>(matches.size());
-  for (int k = 0; k < kMaxLengths; ++k, length *= kStep) {
-    Pose at = *pose;
-    at.t = length * direction;
-    const Matrix6d information =
-        SampsonInformation(coarse, all, at) / (share * noise_px * noise_px);
-    if (RelativeScaleSigma(information, at) > kHopeless) break;
-    lengths.push_back(length);
+  std::vector<double> Lengths(const std::vector<double>& more_lengths) const {
+    const double shortest = ShortestLength(matches_, start_.R);
+    const std::vector<double> all(coarse_.size(), 1.0);
+    const double share = coarse_.size() / static_cast<double>(matches_.size());
+    double length = shortest;
+    std::vector<double> lengths;
+    for (int k = 0; k < kMaxLengths; ++k, length *= kStep) {
+      Pose at = start_;
+      at.t = length * direction_;
+      const Matrix6d information =
+          SampsonInformation(coarse_, all, at) / (share * noise_px_ * noise_px_);
+      if (RelativeScaleSigma(information, at) > kHopeless) break;
+      lengths.push_back(length);
+    }
+    lengths.insert(lengths.end(), more_lengths.begin(), more_lengths.end());
+    lengths.push_back(std::max(kFar * shortest, kStep * length));
+    return lengths;
   }
-  lengths.insert(lengths.end(), more_lengths.begin(), more_lengths.end());
-  lengths.push_back(std::max(kFar * ShortestLength(matches, pose->R), kStep * length));
 
   // Of all matches and of the prior, pixels^2.
-  const auto score_of = [&](const GroupedMatches& scored, const Pose& motion) {
+  double ScoreOf(const GroupedMatches& scored, const Pose& motion) const {
     PriorResiduals::Residuals r;
-    prior.Evaluate(motion, &r, nullptr);
-    const double score =
-        scored.ScoreInFront(motion, threshold_px, std::numeric_limits<double>::infinity(), nullptr);
-    return score * matches.size() / scored.size() + noise_px * noise_px * r.squaredNorm();
-  };
-  const auto optimize = [&](const GroupedMatches& with, SmallEngine* solver, double threshold,
-                            Pose* motion) {
+    prior_.Evaluate(motion, &r, nullptr);
+    const double score = scored.ScoreInFront(motion, threshold_px_,
+                                             std::numeric_limits<double>::infinity(), nullptr);
+    return score * matches_.size() / scored.size() + noise_px_ * noise_px_ * r.squaredNorm();
+  }
+
+  bool Optimize(const GroupedMatches& with, SmallEngine* engine, double threshold, Pose* motion) {
     LeastSquaresOptions options;
     options.limits_length = true;
     options.loss_scale = threshold;
-    with.SelectInliers(*motion, threshold, &errors, &mask);
-    const double unit = noise_px * std::sqrt(with.size() / static_cast<double>(matches.size()));
-    return solver->Minimize(options, mask, prior, unit, motion);
-  };
+    with.SelectInliers(*motion, threshold, &errors_, &mask_);
+    const double unit = noise_px_ * std::sqrt(with.size() / static_cast<double>(matches_.size()));
+    return engine->Minimize(options, mask_, prior_, unit, motion);
+  }
 
-  // From each length roughly, then from the best few and from the longest to the minimum.
-  std::vector<Candidate> candidates;
-  const auto polish = [&](Candidate* candidate) {
-    for (int pass = 0; pass < 2; ++pass) {
-      if (!optimize(subset, &engine, threshold_px, &candidate->motion)) break;
-    }
-    candidate->score = score_of(subset, candidate->motion);
-  };
-  const auto from_length = [&](double from) {
+  // Roughly.
+  Candidate FromLength(double length) {
     Candidate candidate;
-    candidate.length = from;
-    candidate.motion = *pose;
-    candidate.motion.t = from * direction;
-    ResolveSign(coarse, kLooseFactor * threshold_px, &candidate.motion);
-    optimize(coarse, &coarse_engine, kLooseFactor * threshold_px, &candidate.motion);
-    candidate.score = score_of(subset, candidate.motion);
+    candidate.motion = start_;
+    candidate.motion.t = length * direction_;
+    ResolveSign(coarse_, kLooseFactor * threshold_px_, &candidate.motion);
+    Optimize(coarse_, &coarse_engine_, kLooseFactor * threshold_px_, &candidate.motion);
+    candidate.score = ScoreOf(subset_, candidate.motion);
     return candidate;
-  };
-  const double outlier = threshold_px * threshold_px;
-  const double start_score = score_of(subset, *pose);
-  Candidate longest = from_length(lengths.back());
-  polish(&longest);
-  // If the longest fits as well as the start, the arms do not determine |t|: the others are
-  // skipped.
-  const bool within = lengths.size() > 1 && norm <= lengths[lengths.size() - 2];
-  if (!within || std::abs(start_score - longest.score) >= outlier) {
-    for (size_t k = 0; k + 1 < lengths.size(); ++k) candidates.push_back(from_length(lengths[k]));
   }
-  const auto by_score = [](const Candidate& x, const Candidate& y) { return x.score < y.score; };
-  std::stable_sort(candidates.begin(), candidates.end(), by_score);
-  size_t kept = 0;
-  while (kept < std::min(kPolished, candidates.size()) &&
-         candidates[kept].score <= candidates[0].score + kInReach * outlier * matches.size()) {
-    ++kept;
+
+  // To the minimum.
+  void Polish(Candidate* candidate) {
+    for (int pass = 0; pass < 2; ++pass) {
+      if (!Optimize(subset_, &engine_, threshold_px_, &candidate->motion)) break;
+    }
+    candidate->score = ScoreOf(subset_, candidate->motion);
   }
-  candidates.resize(kept);
-  for (Candidate& candidate : candidates) polish(&candidate);
-  candidates.push_back(longest);
-  candidates.push_back({norm, start_score, *pose});
-  std::stable_sort(candidates.begin(), candidates.end(), by_score);
-  const Pose found = candidates[0].motion;
-  // The best of the subset must not be worse for all matches.
-  if (found.t == pose->t || !(score_of(matches, found) < score_of(matches, *pose))) {
-    return false;
+
+  // Keeps the best few and those near them.
+  void PolishBest(std::vector<Candidate>* candidates) {
+    SortByScore(candidates);
+    size_t kept = 0;
+    while (kept < std::min(kPolished, candidates->size()) &&
+           (*candidates)[kept].score <=
+               (*candidates)[0].score + kInReach * Outlier() * matches_.size()) {
+      ++kept;
+    }
+    candidates->resize(kept);
+    for (Candidate& candidate : *candidates) Polish(&candidate);
   }
+
+  const GroupedMatches& matches_;
+  const double threshold_px_;
+  const double noise_px_;
+  const PriorResiduals& prior_;
+  const Pose start_;
+  const Eigen::Vector3d direction_;
+  const GroupedMatches subset_;
+  const GroupedMatches coarse_;
+  SmallEngine engine_, coarse_engine_;
+  std::vector<double> errors_;
+  std::vector<char> mask_;
+};
+
+}  // namespace
+
+bool SearchScale(const GroupedMatches& matches, double threshold_px, double noise_px,
+                 const PriorResiduals& prior, const std::vector<double>& lengths, Pose* pose) {
+  if (!(pose->t.norm() > 0) || !(ShortestLength(matches, pose->R) > 0)) return false;
+  const Pose found = LengthSearch(matches, threshold_px, noise_px, prior, *pose).Run(lengths);
+  if (found.t == pose->t) return false;
   *pose = found;
   return true;
 }
