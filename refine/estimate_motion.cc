@@ -117,9 +117,7 @@ class Estimator {
   std::vector<const SolverInfo*> solvers_;
   MotionPrior prior_;
   RansacOptions ransac_;
-  std::vector<int> first_of_;  // shared_pixels.h
-  std::vector<Match> distinct_;
-  std::vector<int> distinct_row_of_;  // by position in pair_.matches; -1: none
+  DistinctSet distinct_;
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
   GroupedMatches matches_;
   MotionSearch search_;
@@ -174,14 +172,8 @@ bool Estimator::ChooseSolvers() {
 void Estimator::GroupMatches() {
   const auto start = std::chrono::steady_clock::now();
   if (solvers_[0]->solve != &Solve2ptAckermann) centre_ = RigCentre(pair_.rig);
-  const std::vector<size_t> rows = DistinctMatches(pair_.matches, &first_of_);
-  distinct_row_of_.assign(pair_.matches.size(), -1);
-  distinct_.reserve(rows.size());
-  for (const size_t row : rows) {
-    distinct_row_of_[row] = static_cast<int>(distinct_.size());
-    distinct_.push_back(pair_.matches[row]);
-  }
-  matches_ = GroupedMatches(WithOrigin(pair_.rig, centre_), distinct_);
+  distinct_ = KeepDistinct(pair_.matches);
+  matches_ = GroupedMatches(WithOrigin(pair_.rig, centre_), distinct_.matches);
   estimate_.ransac_ms = MillisecondsSince(start);
 }
 
@@ -270,14 +262,7 @@ bool Estimator::ExceedsChanceUnrefined() const {
 // Consensus and doubts, over the distinct matches; then the inliers among all.
 void Estimator::Judge() {
   estimate_.inlier_ratio = estimate_.num_inliers / static_cast<double>(matches_.size());
-  if (Refined()) {
-    const std::vector<char> of_distinct = std::move(estimate_.refine.inliers);
-    estimate_.refine.inliers.assign(pair_.matches.size(), 0);
-    for (size_t k = 0; k < pair_.matches.size(); ++k) {
-      if (first_of_[k] < 0) continue;
-      estimate_.refine.inliers[k] = of_distinct[distinct_row_of_[first_of_[k]]];
-    }
-  }
+  if (Refined()) estimate_.refine.inliers = distinct_.OfAll(estimate_.refine.inliers);
   if (!(Refined() ? estimate_.refine.exceeds_chance : ExceedsChanceUnrefined())) {
     estimate_.status = EstimateStatus::kNoConsensus;
     estimate_.message = std::to_string(estimate_.num_inliers) + " of " +

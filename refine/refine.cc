@@ -363,7 +363,10 @@ RefineSummary Refine(const RefineOptions& options, const Rig& rig,
     summary.message = error;
     return summary;
   }
-  return Refine(options, GroupedMatches(rig, matches), prior, pose);
+  const DistinctSet distinct = KeepDistinct(matches);
+  RefineSummary summary = Refine(options, GroupedMatches(rig, distinct.matches), prior, pose);
+  if (!summary.inliers.empty()) summary.inliers = distinct.OfAll(summary.inliers);
+  return summary;
 }
 
 }  // namespace rigel

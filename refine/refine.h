@@ -156,7 +156,9 @@ struct RefineSummary {
   double final_cost = -1.0;
 
   int num_inliers = 0;
-  std::vector<char> inliers;                // 1 or 0 for each match, in the order of the input
+  // 1 or 0 for each match, in the order of the input. A match that is listed again has the flag of
+  // the first, and counts once in num_inliers.
+  std::vector<char> inliers;
   std::vector<CameraPairFit> camera_pairs;  // by camera1, then camera2
   double median_residual_px = -1.0;         // median |Sampson error| of the inliers
   double noise_px = -1.0;                   // given or estimated

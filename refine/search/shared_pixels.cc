@@ -120,13 +120,40 @@ std::vector<size_t> DistinctMatches(const std::vector<Match>& matches, std::vect
   return rows;
 }
 
+DistinctSet KeepDistinct(const std::vector<Match>& matches) {
+  DistinctSet distinct;
+  std::vector<int> first_of;
+  const std::vector<size_t> rows = DistinctMatches(matches, &first_of);
+  distinct.position.assign(matches.size(), -1);
+  distinct.matches.reserve(rows.size());
+  for (const size_t row : rows) {
+    distinct.position[row] = static_cast<int>(distinct.matches.size());
+    distinct.matches.push_back(matches[row]);
+  }
+  for (size_t k = 0; k < matches.size(); ++k) {
+    if (first_of[k] >= 0) distinct.position[k] = distinct.position[first_of[k]];
+  }
+  return distinct;
+}
+
+std::vector<char> DistinctSet::OfAll(const std::vector<char>& of_distinct) const {
+  std::vector<char> flags(position.size(), 0);
+  for (size_t k = 0; k < position.size(); ++k) {
+    if (position[k] >= 0) flags[k] = of_distinct[position[k]];
+  }
+  return flags;
+}
+
 std::vector<SharedPixel> FindSharedPixels(const GroupedMatches& matches) {
   std::vector<SharedPixel> shared;
   for (const bool at_time2 : {false, true}) {
     const SamePoints same(matches.matches(), at_time2);
     for (const int first : same.firsts()) {
       for (int j = first; j >= 0; j = same.Next(j)) {
-        for (int k = same.Next(j); k >= 0; k = same.Next(k)) shared.push_back({j, k, at_time2});
+        int linked = 0;
+        for (int k = same.Next(j); k >= 0 && linked < kMaxLinked; k = same.Next(k), ++linked) {
+          shared.push_back({j, k, at_time2});
+        }
       }
     }
   }

@@ -22,6 +22,16 @@ inline constexpr int kMaxPartners = 3;
 // first match that is the same as match k, -1 if k does not count for its partners.
 std::vector<size_t> DistinctMatches(const std::vector<Match>& matches, std::vector<int>* first_of);
 
+// Those matches, and where each of all matches is among them.
+struct DistinctSet {
+  std::vector<Match> matches;
+  std::vector<int> position;  // of each of all matches, a repeat that of its first; -1: none
+
+  // Flags of the distinct matches as flags of all: 0 for those that do not count.
+  std::vector<char> OfAll(const std::vector<char>& of_distinct) const;
+};
+DistinctSet KeepDistinct(const std::vector<Match>& matches);
+
 // Two matches (grouped order, first < second) with the same point at time 1 or at time 2.
 struct SharedPixel {
   int first = 0;
@@ -29,7 +39,9 @@ struct SharedPixel {
   bool at_time2 = false;
 };
 
-// All such pairs.
+// All such pairs; of a point with more than kMaxLinked matches, each with the next kMaxLinked
+// alone.
+inline constexpr int kMaxLinked = 64;
 std::vector<SharedPixel> FindSharedPixels(const GroupedMatches& matches);
 
 // Those between matches of the mask.

@@ -237,5 +237,29 @@ TEST(SharedPixels, RowsOfOnePointAreCorrelated) {
   EXPECT_LT(nees, 1.2);
 }
 
+TEST(SharedPixels, ARefinementOfRepeatedAndLostRowsIsThatOfTheOthers) {
+  const FramePair pair = StereoPair(150, 0.0, 3);
+  Pose expected = *pair.truth, pose = *pair.truth;
+  const RefineSummary alone =
+      Refine(RefineOptions(), pair.rig, pair.matches, pair.prior, &expected);
+  std::vector<Match> matches = pair.matches;
+  matches.insert(matches.end(), pair.matches.begin(), pair.matches.end());
+  Match lost;
+  for (int k = 0; k < 20000; ++k) {
+    lost.pixel2 = {static_cast<double>(k), 0.0};
+    matches.push_back(lost);
+  }
+  const RefineSummary summary = Refine(RefineOptions(), pair.rig, matches, pair.prior, &pose);
+  EXPECT_EQ(pose.R, expected.R);
+  EXPECT_EQ(pose.t, expected.t);
+  EXPECT_EQ(summary.num_inliers, alone.num_inliers);
+  ASSERT_EQ(summary.inliers.size(), matches.size());
+  for (size_t k = 0; k < pair.matches.size(); ++k) {
+    EXPECT_EQ(summary.inliers[k], alone.inliers[k]);
+    EXPECT_EQ(summary.inliers[pair.matches.size() + k], alone.inliers[k]);
+  }
+  EXPECT_EQ(summary.inliers.back(), 0);
+}
+
 }  // namespace
 }  // namespace rigel
