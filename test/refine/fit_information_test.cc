@@ -144,7 +144,10 @@ std::vector<Match> LandmarkMatches(const FramePair& pair, int num_points, Random
     return camera.intrinsics.Project(camera.Q.transpose() * (x - camera.s));
   };
   for (int n = 0; n < num_points; ++n) {
-    const Eigen::Vector3d X(random->Uniform(-6, 6), random->Uniform(-3, 2), random->Uniform(3, 20));
+    const double z = random->Uniform(3, 20);
+    const double y = random->Uniform(-3, 2);
+    const double x = random->Uniform(-6, 6);
+    const Eigen::Vector3d X(x, y, z);
     for (const int camera2 : {0, 1}) {
       Match m;
       m.camera1 = n % 2;

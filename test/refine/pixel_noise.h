@@ -55,7 +55,11 @@ inline FramePair WallPair(Random* random) {
   const Pose truth = {ExpSO3(Eigen::Vector3d(0, DegToRad(1.0), 0)), {0.5, 0, -0.3}};
   pair.truth = truth;
   while (pair.matches.size() < 200) {
-    const Eigen::Vector3d X(random->Uniform(-6, 6), random->Uniform(-3, 2), random->Uniform(8, 9));
+    // One after the other: the order of arguments is the compiler's.
+    const double z = random->Uniform(8, 9);
+    const double y = random->Uniform(-3, 2);
+    const double x_body = random->Uniform(-6, 6);
+    const Eigen::Vector3d X(x_body, y, z);
     Match m;
     m.camera1 = static_cast<int>(pair.matches.size()) % 2;
     m.camera2 = static_cast<int>(pair.matches.size() / 2) % 2;

@@ -293,11 +293,16 @@ class QuarterCircle {
     Random random = Random::Stream(17, step);
     const RigCamera& camera = rig_.cameras[0];
     while (pair.matches.size() < 120) {
-      const Eigen::Vector3d X(random.Uniform(6, 40), random.Uniform(-20, 20), random.Uniform(0, 8));
+      const double z = random.Uniform(0, 8);
+      const double y = random.Uniform(-20, 20);
+      const double x = random.Uniform(6, 40);
+      const Eigen::Vector3d X(x, y, z);
       Match m;
       if (!Sees(camera, X, &m.pixel1) || !Sees(camera, truth_ * X, &m.pixel2)) continue;
       for (Pixel* pixel : {&m.pixel1, &m.pixel2}) {
-        *pixel = Pixel(pixel->x() + 0.5 * random.Normal(), pixel->y() + 0.5 * random.Normal());
+        const double v = pixel->y() + 0.5 * random.Normal();
+        const double u = pixel->x() + 0.5 * random.Normal();
+        *pixel = Pixel(u, v);
       }
       pair.matches.push_back(m);
     }

@@ -201,10 +201,15 @@ TEST(SharedPixels, RowsOfOnePointAreCorrelated) {
     std::vector<Match> matches;
     Random random = Random::Stream(5, index);
     const auto noisy = [&](const Pixel& p) {
-      return Pixel(p.x() + 0.5 * random.Normal(), p.y() + 0.5 * random.Normal());
+      const double v = p.y() + 0.5 * random.Normal();
+      const double u = p.x() + 0.5 * random.Normal();
+      return Pixel(u, v);
     };
     for (int k = 0; k < 300; ++k) {
-      const Eigen::Vector3d X(random.Uniform(-8, 8), random.Uniform(-4, 4), random.Uniform(5, 30));
+      const double z = random.Uniform(5, 30);
+      const double y = random.Uniform(-4, 4);
+      const double x = random.Uniform(-8, 8);
+      const Eigen::Vector3d X(x, y, z);
       Pixel first[2], second[2];
       bool seen = true;
       for (int c = 0; c < 2; ++c) {
