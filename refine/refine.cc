@@ -62,11 +62,12 @@ class Refiner {
   void Describe(bool done);
   void CountCameraPairs();
   bool GoesOn() { return !fitter_.stop()->Asked(); }
-  double Gate() const {
-    return *std::max_element(fit_.noise.gate_of.begin(), fit_.noise.gate_of.end());
+  // For scores and signs: three sigma of the noisiest camera pair.
+  double Threshold() const {
+    constexpr double kSigmas = 3.0;
+    const auto largest = std::max_element(fit_.noise.sigma_of.begin(), fit_.noise.sigma_of.end());
+    return kSigmas * *largest;
   }
-  // For scores and signs: three sigma.
-  double Threshold() const { return Gate() * (3.0 / kGateSigmas); }
 
   const RefineOptions& options_;
   const GroupedMatches& matches_;
@@ -145,8 +146,6 @@ void Refiner::GiveDirection() {
     }
   }
   fit_.pose = found;
-  std::fprintf(stderr, "give %f best %f t %f %f %f\n", options_.threshold_px, best, found.t.x(),
-               found.t.y(), found.t.z());
 }
 
 // Selection of inliers and least squares in turn until the selection stays.
