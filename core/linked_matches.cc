@@ -1,25 +1,25 @@
 #include "rigel/core/linked_matches.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <numeric>
 
 namespace rigel {
 namespace {
 
-struct KeyPoint {
-  int camera;
-  double u, v;
-  int match;
-
-  bool IsSame(const KeyPoint& other) const {
-    return camera == other.camera && u == other.u && v == other.v;
-  }
-  bool operator<(const KeyPoint& other) const {
-    if (camera != other.camera) return camera < other.camera;
-    if (u != other.u) return u < other.u;
-    return v != other.v ? v < other.v : match < other.match;
-  }
-};
+size_t Hash(const ImagePoint& p) {
+  constexpr uint64_t kFactor = 0x9e3779b97f4a7c15;  // the golden ratio times 2^64: spreads bits
+  // -0.0 and 0.0 are one place.
+  const double u = p.u + 0.0, v = p.v + 0.0;
+  uint64_t bits_u, bits_v;
+  std::memcpy(&bits_u, &u, sizeof u);
+  std::memcpy(&bits_v, &v, sizeof v);
+  uint64_t h = (bits_u + static_cast<uint64_t>(p.camera)) * kFactor;
+  h = ((h ^ (h >> 32)) + bits_v) * kFactor;
+  return static_cast<size_t>(h ^ (h >> 29));
+}
 
 // The least match of the set of match k; sets are trees of links to a lesser match.
 int Root(std::vector<int>* link, int k) {
@@ -27,39 +27,66 @@ int Root(std::vector<int>* link, int k) {
   return k;
 }
 
-void LinkSame(std::vector<KeyPoint> points, std::vector<int>* link) {
-  std::sort(points.begin(), points.end());
-  for (size_t i = 1; i < points.size(); ++i) {
-    if (!points[i].IsSame(points[i - 1])) continue;
-    const int a = Root(link, points[i - 1].match);
-    const int b = Root(link, points[i].match);
-    (*link)[std::max(a, b)] = std::min(a, b);
+// Links the matches of the mask that have the same point.
+void LinkSame(const SamePoints& same, const std::vector<char>& mask, std::vector<int>* link) {
+  for (const int first : same.firsts()) {
+    int before = -1;
+    for (int k = first; k >= 0; k = same.Next(k)) {
+      if (!mask[k]) continue;
+      if (before >= 0) {
+        const int a = Root(link, before);
+        const int b = Root(link, k);
+        (*link)[std::max(a, b)] = std::min(a, b);
+      }
+      before = k;
+    }
   }
 }
 
 }  // namespace
 
+ImagePoint ImagePointOf(const Match& match, bool at_time2) {
+  const Pixel& p = at_time2 ? match.pixel2 : match.pixel1;
+  return {at_time2 ? match.camera2 : match.camera1, p.x(), p.y()};
+}
+
+SamePoints::SamePoints(const std::vector<Match>& matches, bool at_time2)
+    : next_(matches.size(), -1), last_(matches.size(), -1) {
+  size_t size = 16;
+  while (size < 2 * matches.size()) size *= 2;
+  std::vector<int> table(size, -1);
+  for (size_t k = 0; k < matches.size(); ++k) {
+    const ImagePoint point = ImagePointOf(matches[k], at_time2);
+    size_t place = Hash(point) & (size - 1);
+    while (table[place] >= 0 && !(ImagePointOf(matches[table[place]], at_time2) == point)) {
+      place = (place + 1) & (size - 1);
+    }
+    const int row = static_cast<int>(k);
+    int& first = table[place];
+    if (first < 0) {
+      first = row;
+    } else {
+      if (last_[first] < 0) firsts_.push_back(first);
+      next_[last_[first] < 0 ? first : last_[first]] = row;
+      last_[first] = row;
+    }
+  }
+}
+
 bool SharePixel1(const Match& a, const Match& b) {
-  return a.camera1 == b.camera1 && a.pixel1 == b.pixel1;
+  return ImagePointOf(a, false) == ImagePointOf(b, false);
 }
 
 bool SharePixel2(const Match& a, const Match& b) {
-  return a.camera2 == b.camera2 && a.pixel2 == b.pixel2;
+  return ImagePointOf(a, true) == ImagePointOf(b, true);
 }
 
 std::vector<std::vector<int>> LinkedMatches(const std::vector<Match>& matches,
                                             const std::vector<char>& mask) {
-  std::vector<KeyPoint> points1, points2;
-  for (size_t k = 0; k < matches.size(); ++k) {
-    if (!mask[k]) continue;
-    const Match& m = matches[k];
-    points1.push_back({m.camera1, m.pixel1.x(), m.pixel1.y(), static_cast<int>(k)});
-    points2.push_back({m.camera2, m.pixel2.x(), m.pixel2.y(), static_cast<int>(k)});
-  }
   std::vector<int> link(matches.size());
   std::iota(link.begin(), link.end(), 0);
-  LinkSame(std::move(points1), &link);
-  LinkSame(std::move(points2), &link);
+  LinkSame(SamePoints(matches, false), mask, &link);
+  LinkSame(SamePoints(matches, true), mask, &link);
   std::vector<std::vector<int>> sets;
   std::vector<size_t> set_of(matches.size());
   for (size_t k = 0; k < matches.size(); ++k) {

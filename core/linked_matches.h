@@ -8,6 +8,31 @@
 
 namespace rigel {
 
+// A point of an image. Equal to the last bit.
+struct ImagePoint {
+  int camera;
+  double u, v;
+
+  bool operator==(const ImagePoint& other) const {
+    return camera == other.camera && u == other.u && v == other.v;
+  }
+};
+ImagePoint ImagePointOf(const Match& match, bool at_time2);
+
+// Sets of matches with the same point at one of the times, as chains from match to match.
+class SamePoints {
+ public:
+  SamePoints(const std::vector<Match>& matches, bool at_time2);
+
+  // The first match of each set of at least two.
+  const std::vector<int>& firsts() const { return firsts_; }
+  // The match of the set after k, -1 at the end. Ascending.
+  int Next(int k) const { return next_[k]; }
+
+ private:
+  std::vector<int> next_, last_, firsts_;
+};
+
 // True if `a` and `b` are of one key point at time 1, or at time 2: the same pixel of the same
 // camera, to the last bit.
 bool SharePixel1(const Match& a, const Match& b);

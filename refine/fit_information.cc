@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "rigel/core/linked_matches.h"
 #include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/least_squares/noise_information.h"
 #include "rigel/refine/least_squares/normal_equations.h"
@@ -98,7 +98,7 @@ class WeightedRows {
  public:
   WeightedRows(const FittedInliers& fit, const GroupedMatches& matches,
                const std::vector<GroupLinearization>& linear, const NoiseModel& noise)
-      : rows_(matches.size()), group_of_(matches.size()) {
+      : matches_(matches), rows_(matches.size()), group_of_(matches.size()) {
     SampsonRow row;
     for (size_t g = 0; g < matches.groups().size(); ++g) {
       const MatchGroup& group = matches.groups()[g];
@@ -136,31 +136,24 @@ class WeightedRows {
   // The same variance as it was measured: the sum of s s' over sets of matches that share pixels, s
   // the sum of their scores. A residual of leverage h has 1 - h of its variance left.
   Matrix6d MeasuredScatter(const FittedInliers& fit, const Matrix6d& covariance) const {
-    std::vector<int> first(rows_.size());
-    std::iota(first.begin(), first.end(), 0);
-    const auto find = [&first](int k) {
-      while (first[k] != k) k = first[k];
-      return k;
-    };
-    for (const SharedPixel& pair : fit.shared) {
-      const int j = find(pair.first);
-      const int k = find(pair.second);
-      first[std::max(j, k)] = std::min(j, k);
-    }
     constexpr double kMaxLeverage = 0.99;
-    std::vector<Vector6d> scores(rows_.size(), Vector6d::Zero());
-    for (size_t k = 0; k < rows_.size(); ++k) {
-      const Vector6d& row = rows_[k].by_motion;
-      const double leverage = std::min(row.dot(covariance.lazyProduct(row)), kMaxLeverage);
-      scores[find(static_cast<int>(k))] +=
-          Psi(fit, rows_[k].residual) / std::sqrt(1.0 - leverage) * row;
-    }
+    std::vector<char> mask(rows_.size());
+    for (size_t k = 0; k < mask.size(); ++k) mask[k] = fit.factors[k] > 0 ? 1 : 0;
     Matrix6d sum = Matrix6d::Zero();
-    for (const Vector6d& score : scores) sum += score.lazyProduct(score.transpose());
+    for (const std::vector<int>& set : LinkedMatches(matches_.matches(), mask)) {
+      Vector6d score = Vector6d::Zero();
+      for (const int k : set) {
+        const Vector6d& row = rows_[k].by_motion;
+        const double leverage = std::min(row.dot(covariance.lazyProduct(row)), kMaxLeverage);
+        score += Psi(fit, rows_[k].residual) / std::sqrt(1.0 - leverage) * row;
+      }
+      sum += score.lazyProduct(score.transpose());
+    }
     return sum;
   }
 
  private:
+  const GroupedMatches& matches_;
   std::vector<WeightedRow> rows_;
   std::vector<int> group_of_;
 };

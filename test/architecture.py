@@ -91,6 +91,9 @@ def find_cycle(arrows):
   return []
 
 
+TALK = re.compile(r"\b(?:std::)?(?:f?printf|puts|getenv)\(|std::(?:cerr|cout|clog)\b")
+
+
 def check_includes(root, findings):
   """The includes of each file, and the arrows between modules."""
   includes, arrows = {}, {}
@@ -101,6 +104,8 @@ def check_includes(root, findings):
       continue
     includes[path] = []
     for number, line in enumerate(read(root, path).split("\n"), 1):
+      if not module.startswith("tools") and TALK.search(line.split("//")[0]):
+        findings.append(f"{path}:{number}: a library prints nothing and reads no environment")
       match = re.match(r'\s*#\s*include\s*(?:"([^"]*)"|<(rigel/[^>]*)>)', line)
       if not match:
         continue

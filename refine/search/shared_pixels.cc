@@ -1,77 +1,14 @@
 #include "rigel/refine/search/shared_pixels.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <cstring>
 #include <iterator>
 #include <map>
 #include <numeric>
-#include <utility>
+
+#include "rigel/core/linked_matches.h"
 
 namespace rigel {
 namespace {
-
-struct ImagePoint {
-  int camera;
-  double u, v;
-
-  bool operator==(const ImagePoint& other) const {
-    return camera == other.camera && u == other.u && v == other.v;
-  }
-};
-
-ImagePoint PointOf(const Match& match, bool at_time2) {
-  const Pixel& p = at_time2 ? match.pixel2 : match.pixel1;
-  return {at_time2 ? match.camera2 : match.camera1, p.x(), p.y()};
-}
-
-size_t Hash(const ImagePoint& p) {
-  constexpr uint64_t kFactor = 0x9e3779b97f4a7c15;  // the golden ratio times 2^64: spreads bits
-  // -0.0 and 0.0 are one place.
-  const double u = p.u + 0.0, v = p.v + 0.0;
-  uint64_t bits_u, bits_v;
-  std::memcpy(&bits_u, &u, sizeof u);
-  std::memcpy(&bits_v, &v, sizeof v);
-  uint64_t h = (bits_u + static_cast<uint64_t>(p.camera)) * kFactor;
-  h = ((h ^ (h >> 32)) + bits_v) * kFactor;
-  return static_cast<size_t>(h ^ (h >> 29));
-}
-
-// Sets of matches with the same point at one of the times: a table from points to their first
-// match, and chains from match to match.
-class SamePoints {
- public:
-  SamePoints(const std::vector<Match>& matches, bool at_time2)
-      : next_(matches.size(), -1), last_(matches.size(), -1) {
-    size_t size = 16;
-    while (size < 2 * matches.size()) size *= 2;
-    std::vector<int> table(size, -1);
-    for (size_t k = 0; k < matches.size(); ++k) {
-      const ImagePoint point = PointOf(matches[k], at_time2);
-      size_t place = Hash(point) & (size - 1);
-      while (table[place] >= 0 && !(PointOf(matches[table[place]], at_time2) == point)) {
-        place = (place + 1) & (size - 1);
-      }
-      const int row = static_cast<int>(k);
-      int& first = table[place];
-      if (first < 0) {
-        first = row;
-      } else {
-        if (last_[first] < 0) firsts_.push_back(first);
-        next_[last_[first] < 0 ? first : last_[first]] = row;
-        last_[first] = row;
-      }
-    }
-  }
-
-  // The first match of each set of at least two.
-  const std::vector<int>& firsts() const { return firsts_; }
-  // The match of the set after k, -1 at the end. Ascending.
-  int Next(int k) const { return next_[k]; }
-
- private:
-  std::vector<int> next_, last_, firsts_;
-};
 
 // Among the matches of one point: repeats name the first of their kind, and if more than
 // kMaxPartners different partners are in one image, those count for nothing.
@@ -80,11 +17,11 @@ void JudgePartners(const std::vector<Match>& matches, const std::vector<int>& ro
   std::vector<int> different;
   std::map<int, int> partners;  // by camera; not counted further than it matters
   for (const int row : rows) {
-    const ImagePoint partner = PointOf(matches[row], !at_time2);
+    const ImagePoint partner = ImagePointOf(matches[row], !at_time2);
     int& in_image = partners[partner.camera];
     if (in_image > kMaxPartners) continue;
     const auto same = std::find_if(different.begin(), different.end(), [&](int other) {
-      return PointOf(matches[other], !at_time2) == partner;
+      return ImagePointOf(matches[other], !at_time2) == partner;
     });
     if (same == different.end()) {
       different.push_back(row);
@@ -94,7 +31,8 @@ void JudgePartners(const std::vector<Match>& matches, const std::vector<int>& ro
     }
   }
   for (const int row : rows) {
-    if (partners[PointOf(matches[row], !at_time2).camera] > kMaxPartners) (*first_of)[row] = -1;
+    if (partners[ImagePointOf(matches[row], !at_time2).camera] > kMaxPartners)
+      (*first_of)[row] = -1;
   }
 }
 
