@@ -208,7 +208,8 @@ TEST(FitInformation, TheScatterOfSharedPixelsIsThatOfScoresThatAreDrawn) {
   }
   const double bias = n / (n - 6.0);
   ExpectRatiosWithin(0.1, drawn * bias, with_shared);
-  EXPECT_GT(Ratios(drawn, without)(1), 1.3);
+  // The measured half sees the links by itself; the model's half alone would be off by 1.3.
+  EXPECT_GT(Ratios(drawn, without)(1), 1.1);
 }
 
 // With unknown noise the scatter follows the noise of each camera pair, whatever the model says.
