@@ -20,9 +20,6 @@
 
 namespace rigel {
 
-// What a rig that stands still moves, in typical lengths: some millimetres.
-inline constexpr double kStandingLength = 3e-3;
-
 // A motion with everything that was chosen at it. Vectors are in grouped order.
 struct Fit {
   Pose pose;  // of the fitted point, the origin of the matches' body frame
@@ -62,9 +59,6 @@ class Fitter {
   // True if another reference match of the depth forms would be chosen at `fit`. One that was
   // chosen at a poor start holds the motion there, as its rays are taken as exact.
   bool ReferenceIsStale(const Fit& fit) const;
-
-  // From now on the weak prior expects no length, as of a rig that stands still.
-  void ExpectStanding() { parts_.typical_length *= kStandingLength; }
 
   // The residuals of the prior about `start`, and their information at `pose`.
   PriorResiduals PriorAt(const Pose& start) const;

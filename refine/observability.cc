@@ -62,6 +62,18 @@ void SetDeviations(const Matrix6d& of_rig, const Pose& body, RefineSummary* summ
   summary->weakest_direction = WeakestDirection(*summary->covariance, body.t);
 }
 
+// The parallax that the noise could make, pixels: a rig that moves exceeds it.
+double ParallaxLimitPx(const RefineOptions& options, const GroupedMatches& matches,
+                       const Fit& fit) {
+  // A given noise level is trusted. An estimated one may be too small, because of a fit to the
+  // noise.
+  const double noise_px =
+      options.noise_px.has_value()
+          ? fit.noise.sigma_px
+          : std::max(fit.noise.sigma_px, kMinMatchNoisePx * PixelUnit(matches.rig()));
+  return kParallaxSigmas * noise_px;
+}
+
 void SetFlags(RefineSummary* summary, bool at_limit) {
   if (!summary->covariance || !summary->exceeds_chance) return;
   summary->rotation_observable = RadToDeg(summary->rotation_sigma) <= kRotationObservableDeg;
@@ -77,17 +89,6 @@ void SetFlags(RefineSummary* summary, bool at_limit) {
 }
 
 }  // namespace
-
-double ParallaxLimitPx(const RefineOptions& options, const GroupedMatches& matches,
-                       const Fit& fit) {
-  // A given noise level is trusted. An estimated one may be too small, because of a fit to the
-  // noise.
-  const double noise_px =
-      options.noise_px.has_value()
-          ? fit.noise.sigma_px
-          : std::max(fit.noise.sigma_px, kMinMatchNoisePx * PixelUnit(matches.rig()));
-  return kParallaxSigmas * noise_px;
-}
 
 void DescribeObservability(const RefineOptions& options, const GroupedMatches& matches,
                            const Eigen::Vector3d& point, const Fitter& fitter, const Fit& fit,

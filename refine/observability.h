@@ -10,10 +10,6 @@
 
 namespace rigel {
 
-// The parallax (ParallaxPercentilePx) that the noise could make, pixels: a rig that moves exceeds
-// it.
-double ParallaxLimitPx(const RefineOptions& options, const GroupedMatches& matches, const Fit& fit);
-
 // Fills the uncertainty and the flags of `summary` for a fit at its minimum: its covariance, the
 // standard deviations, and what is observable (limits in uncertainty.h). `point` of the body is the
 // origin of the matches' frame. summary->exceeds_chance must be set.

@@ -42,7 +42,7 @@ class Refiner {
     summary_.num_iterations = 0;
     Start();
     const bool done = FitUntilSelectionStays(false) && SearchLength() && CheckSign() &&
-                      CheckStanding() && FitUntilSelectionStays(true);
+                      FitUntilSelectionStays(true);
     Describe(done);
     if (summary_.IsSolutionUsable()) *pose = fit_.pose;
     return summary_;
@@ -57,7 +57,6 @@ class Refiner {
   std::vector<double> LengthsOfDistance() const;
   bool SearchLength();
   bool CheckSign();
-  bool CheckStanding();
   bool ExceedsChanceAt(double threshold_px) const;
   void Describe(bool done);
   void CountCameraPairs();
@@ -209,17 +208,6 @@ bool Refiner::CheckSign() {
   const bool possible = ResolveSign(sign_subset_, Threshold(), &fit_.pose);
   if (!possible && LengthIsOpen()) ResolveSignAndScale(sign_subset_, Threshold(), &fit_.pose);
   return fit_.pose.t == t || FitUntilSelectionStays(false);
-}
-
-// Where the matches show no motion, any translation along the baselines fits, and the weak prior
-// would take the typical length. A fit from next to none.
-bool Refiner::CheckStanding() {
-  if (!GoesOn() || options_.hold_distance || prior_.distance.has_value()) return true;
-  const double parallax_px = ParallaxPercentilePx(matches_, fit_.inliers, fit_.pose);
-  if (parallax_px > ParallaxLimitPx(options_, matches_, fit_)) return true;
-  fitter_.ExpectStanding();
-  fit_.pose.t = kStandingLength * options_.typical_length * fit_.pose.t.normalized();
-  return FitUntilSelectionStays(false);
 }
 
 void Refiner::CountCameraPairs() {

@@ -2,6 +2,7 @@
 #include "rigel/refine/refine.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -364,6 +365,21 @@ TEST(RefineScale, WithoutADistanceATurnSaysTheMotionOfTheCameraOnly) {
   // 18 steps of two degrees of freedom: one in a hundred below or above.
   EXPECT_GT(std::sqrt(squares), 0.7);
   EXPECT_LT(std::sqrt(squares), 1.3);
+}
+
+// Where nothing lets the length come down: the refinement is stopped at once.
+TEST(RefineScale, ALengthThatStaysIsCutAtTheLimit) {
+  const FramePair pair = ScenePair(SceneOptions(), 1);
+  RefineOptions options;
+  const std::atomic<bool> cancel{true};
+  options.cancel = &cancel;
+  Pose pose = *pair.truth;
+  pose.t *= 1e6;
+  const RefineSummary summary = RefinePair(options, pair, &pose);
+  ASSERT_TRUE(summary.IsSolutionUsable()) << summary.message;
+  // The baseline of the rig is about 1 m, as the typical length is.
+  EXPECT_LT(MotionOfPoint(pose, summary.rig_center).t.norm(), 120.0);
+  EXPECT_FALSE(summary.scale_observable);
 }
 
 }  // namespace
