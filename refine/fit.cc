@@ -107,10 +107,13 @@ bool Fitter::Select(bool exclude_implausible, Fit* fit) {
                               FreeDirections(fit->pose), &members.covariance);
     members.members = previous;
   }
-  fit->errors.Set(matches_, fit->pose, options_.threshold_px);
   const NoiseModel before = fit->noise;
-  fit->noise = EstimateNoise(noise_options_, matches_, fit->errors, kParameters,
-                             previous.empty() ? nullptr : &before);
+  if (previous.empty() || fit->pose.R != fit->judged.R || fit->pose.t != fit->judged.t) {
+    fit->errors.Set(matches_, fit->pose, options_.threshold_px);
+    fit->noise = EstimateNoise(noise_options_, matches_, fit->errors, kParameters,
+                               previous.empty() ? nullptr : &before);
+    fit->judged = fit->pose;
+  }
   fit->num_inliers = SelectWithinGate(matches_, fit->errors, fit->noise, &fit->inliers);
   const std::vector<double> factors = FactorsOfAll(*fit);
   if (judge) {

@@ -25,6 +25,7 @@ struct Fit {
   Pose pose;  // of the fitted point, the origin of the matches' body frame
   MatchErrors errors;
   NoiseModel noise;
+  Pose judged;  // where Select() took errors and noise
   std::vector<char> inliers;
   int num_inliers = 0;
   // Factors of the residuals besides 1 / sigma: EpipoleWeights(), and 0 for no inlier.

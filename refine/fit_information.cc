@@ -6,7 +6,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include "rigel/core/linked_matches.h"
 #include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/least_squares/noise_information.h"
 #include "rigel/refine/least_squares/normal_equations.h"
@@ -22,7 +21,7 @@ constexpr double kPooledWeight = 30.0;
 
 // D is a mean of slowly varying terms: so many matches give it to some percent. A third of a
 // microsecond each.
-constexpr int kNoiseSample = 200;
+constexpr int kNoiseSample = 100;
 constexpr int kMinSampled = 30;
 
 // Sums over inliers.
@@ -59,7 +58,7 @@ Vector6d GradientAt(const FittedInliers& fit, const GroupedMatches& matches,
     options.loss_scale = fit.loss_scale_sigmas * sigma;
     MotionNormalEquations equations;
     AddNormalEquations(options, matches, group, matches.Pixels(group),
-                       fit.factors.data() + group.begin, pose, /*derivatives=*/true, &equations);
+                       fit.factors.data() + group.begin, pose, SampsonParts::kGradient, &equations);
     sum += equations.gradient / (sigma * sigma);
   }
   return sum;
@@ -93,12 +92,22 @@ struct WeightedRow {
   UnalignedMatrix<4> gradient = UnalignedMatrix<4>::Zero();  // by the pixels, without the weight
 };
 
-// The rows of the inliers; zero for other matches.
+// Rows of inliers, by whole sets of matches that share pixels; zero for other matches. So many rows
+// give the scatter to some percent; of more inliers every second set is taken, or every third, ...
 class WeightedRows {
  public:
+  static constexpr int kSample = 600;
+
   WeightedRows(const FittedInliers& fit, const GroupedMatches& matches,
                const std::vector<GroupLinearization>& linear, const NoiseModel& noise)
-      : matches_(matches), rows_(matches.size()), group_of_(matches.size()) {
+      : set_of_(LinkedSets(fit.shared, matches.size())),
+        rows_(matches.size()),
+        group_of_(matches.size()) {
+    const auto num_inliers =
+        matches.size() - std::count(fit.factors.begin(), fit.factors.end(), 0.0);
+    const long stride = std::max<long>(1, num_inliers / kSample);
+    std::vector<char> is_taken(matches.size(), 0);  // of the first match of a set
+    long num_sets = 0, num_rows = 0;
     SampsonRow row;
     for (size_t g = 0; g < matches.groups().size(); ++g) {
       const MatchGroup& group = matches.groups()[g];
@@ -106,14 +115,18 @@ class WeightedRows {
       for (int i = 0; i < group.size; ++i) {
         const int k = group.begin + i;
         group_of_[k] = static_cast<int>(g);
-        if (!(fit.factors[k] > 0) || !DifferentiateSampsonOnce(linear[g], {p.x1[i], p.y1[i], 1.0},
-                                                               {p.x2[i], p.y2[i], 1.0}, &row)) {
+        if (set_of_[k] == k) is_taken[k] = num_sets++ % stride == 0 ? 1 : 0;
+        if (!is_taken[set_of_[k]] || !(fit.factors[k] > 0)) continue;
+        ++num_rows;
+        if (!DifferentiateSampsonOnce(linear[g], {p.x1[i], p.y1[i], 1.0}, {p.x2[i], p.y2[i], 1.0},
+                                      &row)) {
           continue;
         }
         const double weight = fit.factors[k] / noise.sigma_of[g];
         rows_[k] = {row.residual / noise.sigma_of[g], weight * row.by_motion, row.gradient};
       }
     }
+    if (num_rows > 0) of_sample_ = num_inliers / static_cast<double>(num_rows);
   }
 
   // What correlations add to the variance of the score: v (j k' + k j') rho for rows j and k that
@@ -127,35 +140,36 @@ class WeightedRows {
       const int begin = pair.at_time2 ? 2 : 0;
       const double correlation = j.gradient.segment<2>(begin).dot(k.gradient.segment<2>(begin)) *
                                  std::sqrt(v[group_of_[pair.first]] * v[group_of_[pair.second]]);
-      const Eigen::Matrix<double, 6, 6> product = j.by_motion * k.by_motion.transpose();
-      sum += correlation * (product + product.transpose());
+      if (correlation != 0.0) {
+        sum += (correlation * j.by_motion).lazyProduct(k.by_motion.transpose());
+      }
     }
-    return sum;
+    return of_sample_ * (sum + sum.transpose());
   }
 
   // The same variance as it was measured: the sum of s s' over sets of matches that share pixels, s
   // the sum of their scores. A residual of leverage h has 1 - h of its variance left.
   Matrix6d MeasuredScatter(const FittedInliers& fit, const Matrix6d& covariance) const {
     constexpr double kMaxLeverage = 0.99;
-    std::vector<char> mask(rows_.size());
-    for (size_t k = 0; k < mask.size(); ++k) mask[k] = fit.factors[k] > 0 ? 1 : 0;
-    Matrix6d sum = Matrix6d::Zero();
-    for (const std::vector<int>& set : LinkedMatches(matches_.matches(), mask)) {
-      Vector6d score = Vector6d::Zero();
-      for (const int k : set) {
-        const Vector6d& row = rows_[k].by_motion;
-        const double leverage = std::min(row.dot(covariance.lazyProduct(row)), kMaxLeverage);
-        score += Psi(fit, rows_[k].residual) / std::sqrt(1.0 - leverage) * row;
-      }
-      sum += score.lazyProduct(score.transpose());
+    std::vector<Vector6d> scores(rows_.size(), Vector6d::Zero());
+    for (size_t k = 0; k < rows_.size(); ++k) {
+      const Vector6d& row = rows_[k].by_motion;
+      if (row.isZero(0.0)) continue;
+      const double leverage = std::min(row.dot(covariance.lazyProduct(row)), kMaxLeverage);
+      scores[set_of_[k]] += Psi(fit, rows_[k].residual) / std::sqrt(1.0 - leverage) * row;
     }
-    return sum;
+    Matrix6d sum = Matrix6d::Zero();
+    for (const Vector6d& score : scores) {
+      if (!score.isZero(0.0)) sum += score.lazyProduct(score.transpose());
+    }
+    return of_sample_ * sum;
   }
 
  private:
-  const GroupedMatches& matches_;
+  std::vector<int> set_of_;
   std::vector<WeightedRow> rows_;
   std::vector<int> group_of_;
+  double of_sample_ = 1.0;  // all inliers over those that were taken
 };
 
 // The scatter of the model has the right shape, and the measured one the right size, for noise that
@@ -203,7 +217,7 @@ FitInformation InformationOfFit(const FittedInliers& fit, const GroupedMatches& 
     }
     MotionNormalEquations equations;
     AddNormalEquations(SampsonKernelOptions(), matches, group, matches.Pixels(group), factors, pose,
-                       /*derivatives=*/true, &equations);
+                       SampsonParts::kAll, &equations);
     const Matrix6d H = equations.curvature / (noise.sigma_of[g] * noise.sigma_of[g]);
     information.observed += H;
     information.scatter += v_of[g] * H;
@@ -234,7 +248,7 @@ namespace {
 bool CompareWithin(const MotionBasis& basis, const Matrix6d& part, const Matrix6d& whole,
                    Eigen::GeneralizedSelfAdjointEigenSolver<Square>* eigen) {
   Matrix6d unused;
-  if (basis.cols() == 0 || !CovarianceOfBasis(whole, basis, &unused)) return false;
+  if (!CovarianceOfBasis(whole, basis, &unused)) return false;
   eigen->compute(basis.transpose() * part * basis, basis.transpose() * whole * basis);
   return eigen->info() == Eigen::Success && eigen->eigenvalues().allFinite();
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace rigel {
 namespace {
@@ -20,32 +21,31 @@ ProsacSampler::ProsacSampler(const GroupedMatches& matches, SampleKind kind, int
       groups_(matches.groups()),
       sampler_(matches.groups(), kind, sample_size) {
   const int n = matches.size();
-  const auto score = [&](int k) {
-    const double s = matches.matches()[k].score;
-    return std::isnan(s) ? std::numeric_limits<double>::infinity() : s;
-  };
   order_.resize(n);
   std::iota(order_.begin(), order_.end(), 0);
   pool_ = groups_;
   pool_size_ = n;
-  const bool ranked = use_scores && std::any_of(order_.begin(), order_.end(),
-                                                [&](int k) { return score(k) != score(0); });
-  if (!ranked || n <= kFirstPool || n <= sample_size) return;
-
-  std::vector<int> all = order_;
-  const auto better = [&](int a, int b) { return score(a) < score(b); };
-  std::stable_sort(all.begin(), all.end(), better);
-  by_score_.reserve(n);
-  size_t g = 0;
-  std::vector<int> group_of(n);
+  if (!use_scores || n <= kFirstPool || n <= sample_size) return;
+  std::vector<std::pair<double, int>> ranking(n);  // score, match
   for (int k = 0; k < n; ++k) {
-    while (k >= groups_[g].begin + groups_[g].size) ++g;
-    group_of[k] = static_cast<int>(g);
+    const double score = matches.matches()[k].score;
+    ranking[k] = {std::isnan(score) ? std::numeric_limits<double>::infinity() : score, k};
   }
-  for (const int k : all) by_score_.push_back(group_of[k]);
+  const double first_score = ranking[0].first;
+  if (std::all_of(ranking.begin(), ranking.end(),
+                  [=](const auto& ranked) { return ranked.first == first_score; })) {
+    return;
+  }
+  std::sort(ranking.begin(), ranking.end());
+  std::vector<int> group_of(n), next;
   for (const MatchGroup& group : groups_) {
-    std::stable_sort(order_.begin() + group.begin, order_.begin() + group.begin + group.size,
-                     better);
+    std::fill_n(group_of.begin() + group.begin, group.size, static_cast<int>(next.size()));
+    next.push_back(group.begin);
+  }
+  by_score_.reserve(n);
+  for (const auto& [score, k] : ranking) {
+    by_score_.push_back(group_of[k]);
+    order_[next[group_of[k]]++] = k;
   }
   for (MatchGroup& group : pool_) group.size = 0;
   pool_size_ = 0;

@@ -49,13 +49,19 @@ double Rounding2(const RowMajor3d& F) {
 
 void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatches& matches,
                         const MatchGroup& group, const PixelArrays& pixels, const double* weights,
-                        const Pose& pose, bool derivatives, MotionNormalEquations* sum) {
+                        const Pose& pose, SampsonParts parts, MotionNormalEquations* sum) {
   FundamentalDerivatives D;
   const RowMajor3d F = Differentiate(matches, group, pose, &D);
   SampsonSums sums;
-  SumSampson(options, pixels, weights, F.data(), Rounding2(F), derivatives, &sums);
+  SumSampson(options, pixels, weights, F.data(), Rounding2(F), parts, &sums);
   sum->cost += sums.cost;
-  if (derivatives) AddProjected(sums, D, sum->gradient.data(), sum->curvature.data());
+  if (parts == SampsonParts::kAll) {
+    AddProjected(sums, D, sum->gradient.data(), sum->curvature.data());
+  } else if (parts == SampsonParts::kGradient) {
+    for (int i = 0; i < 9; ++i) {
+      sum->gradient += sums.g[i] * Eigen::Map<const Vector6d>(D.d[i]);
+    }
+  }
 }
 
 void Leverages(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,

@@ -19,10 +19,10 @@ struct MotionNormalEquations {
 };
 
 // Adds the result of SumSampson() at `pose` for `pixels` and their weights: all matches of the
-// group or some of them. Without `derivatives` it adds only the cost, with the same bits.
+// group or some of them. Which parts are asked for does not change the bits of the cost.
 void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatches& matches,
                         const MatchGroup& group, const PixelArrays& pixels, const double* weights,
-                        const Pose& pose, bool derivatives, MotionNormalEquations* sum);
+                        const Pose& pose, SampsonParts parts, MotionNormalEquations* sum);
 
 // w^2 J C J' of each match of the group. J is the derivative of its Sampson error (pixels) by that
 // perturbation, w its weight, C = `covariance`. If C is the covariance of the motion from these

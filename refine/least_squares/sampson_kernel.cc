@@ -177,6 +177,13 @@ RIGEL_KERNEL_BODY void AddRowsBody(const Rows& rows, int size, Accumulated* sums
 
 // Separate functions, so that the sums of a loop stay in registers.
 using AddRowsFunction = void(const Rows& rows, int size, Accumulated* sums);
+__attribute__((noinline)) void AddGradientAlone(const Rows& rows, int size, Accumulated* sums) {
+  AddGradient(rows, size, sums);
+}
+RIGEL_TARGET_AVX2 __attribute__((noinline)) void AddGradientAloneAvx2(const Rows& rows, int size,
+                                                                      Accumulated* sums) {
+  AddGradient(rows, size, sums);
+}
 __attribute__((noinline)) void AddRows(const Rows& rows, int size, Accumulated* sums) {
   AddRowsBody(rows, size, sums);
 }
@@ -234,17 +241,20 @@ RIGEL_KERNEL_BODY void Sum(LossKind kind, bool derivatives, double c, const Pixe
 }
 
 // One copy of the loops for each loss, so that none has a branch in it.
-RIGEL_KERNEL_BODY void Dispatch(const SampsonKernelOptions& options, bool derivatives,
+RIGEL_KERNEL_BODY void Dispatch(const SampsonKernelOptions& options, SampsonParts parts,
                                 const PixelArrays& pixels, const double* weights, const double F[9],
-                                double rounding2, AddRowsFunction* add_rows, SampsonSums* sums) {
+                                double rounding2, AddRowsFunction* add_rows,
+                                AddRowsFunction* add_gradient, SampsonSums* sums) {
   const double c = options.loss_scale;
-#define RIGEL_SUM(kind)                                                   \
-  case kind:                                                              \
-    if (derivatives) {                                                    \
-      Sum(kind, true, c, pixels, weights, F, rounding2, add_rows, sums);  \
-    } else {                                                              \
-      Sum(kind, false, c, pixels, weights, F, rounding2, add_rows, sums); \
-    }                                                                     \
+  const bool derivatives = parts != SampsonParts::kCost;
+  AddRowsFunction* add = parts == SampsonParts::kAll ? add_rows : add_gradient;
+#define RIGEL_SUM(kind)                                              \
+  case kind:                                                         \
+    if (derivatives) {                                               \
+      Sum(kind, true, c, pixels, weights, F, rounding2, add, sums);  \
+    } else {                                                         \
+      Sum(kind, false, c, pixels, weights, F, rounding2, add, sums); \
+    }                                                                \
     break
   switch (options.loss) {
     RIGEL_SUM(LossKind::kNone);
@@ -343,10 +353,10 @@ RIGEL_TARGET_AVX2 void AddProjectedAvx2(const SampsonSums& sums, const Fundament
   AddProjectedBody(sums, D, gradient, curvature);
 }
 
-RIGEL_TARGET_AVX2 void SumAvx2(const SampsonKernelOptions& options, bool derivatives,
+RIGEL_TARGET_AVX2 void SumAvx2(const SampsonKernelOptions& options, SampsonParts parts,
                                const PixelArrays& pixels, const double* weights, const double F[9],
                                double rounding2, SampsonSums* sums) {
-  Dispatch(options, derivatives, pixels, weights, F, rounding2, AddRowsAvx2, sums);
+  Dispatch(options, parts, pixels, weights, F, rounding2, AddRowsAvx2, AddGradientAloneAvx2, sums);
 }
 
 RIGEL_TARGET_AVX2 void LeveragesAvx2(const PixelArrays& pixels, const double* weights,
@@ -363,12 +373,12 @@ RIGEL_TARGET_AVX2 void GradientWeightsAvx2(const PixelArrays& pixels, const doub
 }  // namespace
 
 void SumSampson(const SampsonKernelOptions& options, const PixelArrays& pixels,
-                const double* weights, const double F[9], double rounding2, bool derivatives,
+                const double* weights, const double F[9], double rounding2, SampsonParts parts,
                 SampsonSums* sums, CpuPath path) {
   if (path == CpuPath::kAvx2) {
-    SumAvx2(options, derivatives, pixels, weights, F, rounding2, sums);
+    SumAvx2(options, parts, pixels, weights, F, rounding2, sums);
   } else {
-    Dispatch(options, derivatives, pixels, weights, F, rounding2, AddRows, sums);
+    Dispatch(options, parts, pixels, weights, F, rounding2, AddRows, AddGradientAlone, sums);
   }
 }
 

@@ -23,6 +23,9 @@ struct SampsonSums {
   double H[81];
 };
 
+// Which of them are wanted: the cost; also the gradient g; also H.
+enum class SampsonParts { kCost, kGradient, kAll };
+
 struct SampsonKernelOptions {
   LossKind loss = LossKind::kNone;
   double loss_scale = 1.0;  // pixels, > 0
@@ -31,10 +34,9 @@ struct SampsonKernelOptions {
 // `F` is the row-major centred fundamental matrix. `weights` has one number for each match; 0
 // leaves it out. The pixels are read up to a multiple of kKernelPadding, where any finite numbers
 // may be. A match whose squared gradient is not above rounding2 (|p1|^2 + |p2|^2) is at an epipole:
-// its residual and derivative are zero. Without `derivatives` only the cost is set. The bits do not
-// depend on the path.
+// its residual and derivative are zero. The bits do not depend on the path.
 void SumSampson(const SampsonKernelOptions& options, const PixelArrays& pixels,
-                const double* weights, const double F[9], double rounding2, bool derivatives,
+                const double* weights, const double F[9], double rounding2, SampsonParts parts,
                 SampsonSums* sums, CpuPath path = BestCpuPath());
 
 // The derivatives of F's entries by six parameters, F row by row; the last two columns are zero.

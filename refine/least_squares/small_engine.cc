@@ -42,7 +42,7 @@ class ParameterEquations {
       const PixelArrays& pixels = packed_.groups[g];
       const double* weights = packed_.weights.data() + (pixels.x1 - packed_.x1.data());
       AddNormalEquations(kernel_, matches_, matches_.groups()[g], pixels, weights, pose,
-                         derivatives, &sum);
+                         derivatives ? SampsonParts::kAll : SampsonParts::kCost, &sum);
     }
     cost = sum.cost;
     if (derivatives) {

@@ -27,7 +27,7 @@ Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<dou
   MotionNormalEquations sum;
   for (const MatchGroup& group : matches.groups()) {
     AddNormalEquations(SampsonKernelOptions(), matches, group, matches.Pixels(group),
-                       weights.data() + group.begin, pose, /*derivatives=*/true, &sum);
+                       weights.data() + group.begin, pose, SampsonParts::kAll, &sum);
   }
   return sum.curvature;
 }
@@ -54,12 +54,22 @@ bool CovarianceOfBasis(const Matrix6d& information, const MotionBasis& basis,
   if (!(diagonal.minCoeff() > 0)) return false;
   const Eigen::VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
   const Square scaled = scale.asDiagonal() * reduced * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Square> eigen(scaled);
-  if (!(eigen.eigenvalues()(0) > kMinEigenvalue)) return false;
-  const Square inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
-                         eigen.eigenvectors().transpose();
-  const Square unscaled = scale.asDiagonal() * inverse * scale.asDiagonal();
-  *covariance = basis * unscaled * basis.transpose();
+  Square root;  // of the inverse: inverse = root' root
+  const Eigen::LLT<Square> llt(scaled);
+  if (llt.info() == Eigen::Success) {
+    root = Square::Identity(k, k);
+    llt.matrixL().solveInPlace(root);
+  }
+  // The trace of the inverse bounds its largest eigenvalue.
+  if (llt.info() != Eigen::Success || !(root.squaredNorm() * kMinEigenvalue < 1.0)) {
+    const Eigen::SelfAdjointEigenSolver<Square> eigen(scaled);
+    if (!(eigen.eigenvalues()(0) > kMinEigenvalue)) return false;
+    root = eigen.eigenvalues().cwiseSqrt().cwiseInverse().asDiagonal() *
+           eigen.eigenvectors().transpose();
+  }
+  const Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, 6, 6> whole_root =
+      root * scale.asDiagonal() * basis.transpose();
+  *covariance = whole_root.transpose() * whole_root;
   return true;
 }
 
@@ -106,19 +116,6 @@ double RelativeScaleSigma(const Matrix6d& information, const Pose& pose) {
   const double norm = pose.t.norm();
   if (!(norm > 0)) return std::numeric_limits<double>::infinity();
   const Eigen::Vector3d direction = pose.t / norm;
-  // As CovarianceOfBasis(), but with a Cholesky factor L if that shows that the rank is full: the
-  // trace of the inverse bounds its largest eigenvalue.
-  const Vector6d scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  const Matrix6d scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> llt(scaled);
-  if (llt.info() == Eigen::Success) {
-    Matrix6d inverse = Matrix6d::Identity();
-    llt.matrixL().solveInPlace(inverse);
-    if (inverse.squaredNorm() * kMinEigenvalue < 1.0) {
-      const Eigen::Vector3d scaled_direction = scale.tail<3>().cwiseProduct(direction);
-      return (inverse.rightCols<3>() * scaled_direction).norm() / norm;
-    }
-  }
   Matrix6d covariance;
   if (!CovarianceOfBasis(information, FullBasis(pose, true), &covariance)) {
     return std::numeric_limits<double>::infinity();

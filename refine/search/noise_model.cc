@@ -86,6 +86,10 @@ class Histogram {
 // `median`.
 double SigmaOfMedian(double median, double gate) {
   constexpr double kRoot2 = 1.4142135623730951;
+  // A gate at six sigma and more cuts off nothing.
+  constexpr double kMedianSigmas = 0.6744897501960817;
+  constexpr double kWide = 6.0;
+  if (gate > kWide * median / kMedianSigmas) return median / kMedianSigmas;
   // The share of errors below the median, under sigma, is half of those below the gate.
   double low = median / kRoot2;
   double high = gate;

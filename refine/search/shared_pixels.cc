@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <numeric>
 
 #include "rigel/core/linked_matches.h"
@@ -12,29 +11,47 @@ namespace {
 
 // Among the matches of one point: repeats name the first of their kind, and if more than
 // kMaxPartners different partners are in one image, those count for nothing.
-void JudgePartners(const std::vector<Match>& matches, const std::vector<int>& rows, bool at_time2,
-                   std::vector<int>* first_of) {
-  std::vector<int> different;
-  std::map<int, int> partners;  // by camera; not counted further than it matters
-  for (const int row : rows) {
-    const ImagePoint partner = ImagePointOf(matches[row], !at_time2);
-    int& in_image = partners[partner.camera];
-    if (in_image > kMaxPartners) continue;
-    const auto same = std::find_if(different.begin(), different.end(), [&](int other) {
-      return ImagePointOf(matches[other], !at_time2) == partner;
-    });
-    if (same == different.end()) {
-      different.push_back(row);
-      ++in_image;
-    } else {
-      (*first_of)[row] = (*first_of)[*same];
+class PartnerJudge {
+ public:
+  PartnerJudge(const std::vector<Match>& matches, bool at_time2)
+      : matches_(matches), at_time2_(at_time2) {}
+
+  void Judge(const std::vector<int>& rows, std::vector<int>* first_of) {
+    partners_.clear();
+    bool too_many = false;
+    for (const int row : rows) {
+      const ImagePoint point = ImagePointOf(matches_[row], !at_time2_);
+      const auto same = std::find_if(partners_.begin(), partners_.end(),
+                                     [&](const Partner& other) { return other.point == point; });
+      if (same != partners_.end()) {
+        (*first_of)[row] = (*first_of)[same->row];
+      } else if (NumIn(point.camera) <= kMaxPartners) {  // not counted further than it matters
+        partners_.push_back({point, row});
+        too_many = too_many || NumIn(point.camera) > kMaxPartners;
+      }
+    }
+    if (!too_many) return;
+    for (const int row : rows) {
+      if (NumIn(ImagePointOf(matches_[row], !at_time2_).camera) > kMaxPartners) {
+        (*first_of)[row] = -1;
+      }
     }
   }
-  for (const int row : rows) {
-    if (partners[ImagePointOf(matches[row], !at_time2).camera] > kMaxPartners)
-      (*first_of)[row] = -1;
+
+ private:
+  struct Partner {
+    ImagePoint point;
+    int row;
+  };
+  long NumIn(int camera) const {
+    return std::count_if(partners_.begin(), partners_.end(),
+                         [camera](const Partner& p) { return p.point.camera == camera; });
   }
-}
+
+  const std::vector<Match>& matches_;
+  const bool at_time2_;
+  std::vector<Partner> partners_;  // the different ones
+};
 
 }  // namespace
 
@@ -44,10 +61,11 @@ std::vector<size_t> DistinctMatches(const std::vector<Match>& matches, std::vect
   std::vector<int> rows_of_point;
   for (const bool at_time2 : {false, true}) {
     const SamePoints same(matches, at_time2);
+    PartnerJudge judge(matches, at_time2);
     for (const int first : same.firsts()) {
       rows_of_point.clear();
       for (int k = first; k >= 0; k = same.Next(k)) rows_of_point.push_back(k);
-      JudgePartners(matches, rows_of_point, at_time2, first_of);
+      judge.Judge(rows_of_point, first_of);
     }
   }
   std::vector<size_t> rows;
@@ -106,6 +124,21 @@ std::vector<SharedPixel> SharedWithin(const std::vector<SharedPixel>& shared,
   return within;
 }
 
+std::vector<int> LinkedSets(const std::vector<SharedPixel>& shared, int num_matches) {
+  std::vector<int> set(num_matches);  // links to an earlier match of the set
+  std::iota(set.begin(), set.end(), 0);
+  const auto root = [&set](int k) {
+    while (set[k] != k) k = set[k] = set[set[k]];
+    return k;
+  };
+  for (const SharedPixel& pair : shared) {
+    const int a = root(pair.first), b = root(pair.second);
+    set[std::max(a, b)] = std::min(a, b);
+  }
+  for (int k = 0; k < num_matches; ++k) set[k] = root(k);
+  return set;
+}
+
 int ResolveCompetition(const GroupedMatches& matches, const std::vector<SharedPixel>& shared,
                        const std::vector<double>& squared_errors, std::vector<char>* inliers) {
   int cleared = 0;
@@ -122,14 +155,17 @@ int ResolveCompetition(const GroupedMatches& matches, const std::vector<SharedPi
 }
 
 int CountDistinctPixels(int num_matches, const std::vector<SharedPixel>& shared) {
+  if (shared.empty()) return num_matches;
   // Of k matches of one point k - 1 follow another.
   int following[2] = {0, 0};
+  int last = 0;
+  for (const SharedPixel& pair : shared) last = std::max(last, pair.second);
   std::vector<char> seen[2];
+  for (std::vector<char>& at : seen) at.resize(last + 1, 0);
   for (const SharedPixel& pair : shared) {
-    std::vector<char>& at = seen[pair.at_time2 ? 1 : 0];
-    if (at.size() <= static_cast<size_t>(pair.second)) at.resize(pair.second + 1, 0);
-    following[pair.at_time2 ? 1 : 0] += at[pair.second] ? 0 : 1;
-    at[pair.second] = 1;
+    char& at = seen[pair.at_time2 ? 1 : 0][pair.second];
+    following[pair.at_time2 ? 1 : 0] += at ? 0 : 1;
+    at = 1;
   }
   return num_matches - std::max(following[0], following[1]);
 }

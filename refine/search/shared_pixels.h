@@ -48,6 +48,10 @@ std::vector<SharedPixel> FindSharedPixels(const GroupedMatches& matches);
 std::vector<SharedPixel> SharedWithin(const std::vector<SharedPixel>& shared,
                                       const std::vector<char>& mask);
 
+// Sets of matches in which two that share a pixel are in one set: for each of `num_matches` the
+// first match of its set.
+std::vector<int> LinkedSets(const std::vector<SharedPixel>& shared, int num_matches);
+
 // At most one of two matches of the same point is an inlier if their other points are in the same
 // image. Clears that of the larger error. Returns how many were cleared.
 int ResolveCompetition(const GroupedMatches& matches, const std::vector<SharedPixel>& shared,

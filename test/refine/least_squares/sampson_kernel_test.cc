@@ -84,8 +84,10 @@ Expected SumByKernel(const Problem& problem, const SampsonKernelOptions& options
     SampsonSums sums, cost_only;
     const PixelArrays pixels = problem.matches.Pixels(group);
     const double* weights = problem.weights.data() + group.begin;
-    SumSampson(options, pixels, weights, F.data(), groups[g].rounding2, true, &sums, path);
-    SumSampson(options, pixels, weights, F.data(), groups[g].rounding2, false, &cost_only, path);
+    SumSampson(options, pixels, weights, F.data(), groups[g].rounding2, SampsonParts::kAll, &sums,
+               path);
+    SumSampson(options, pixels, weights, F.data(), groups[g].rounding2, SampsonParts::kCost,
+               &cost_only, path);
     EXPECT_EQ(sums.cost, cost_only.cost);
     Eigen::Matrix<double, 9, 6> D;
     for (int m = 0; m < 6; ++m) {
@@ -102,7 +104,7 @@ Expected SumByMotion(const Problem& problem, const SampsonKernelOptions& options
   MotionNormalEquations sum;
   for (const MatchGroup& group : problem.matches.groups()) {
     AddNormalEquations(options, problem.matches, group, problem.matches.Pixels(group),
-                       problem.weights.data() + group.begin, problem.pose, /*derivatives=*/true,
+                       problem.weights.data() + group.begin, problem.pose, SampsonParts::kAll,
                        &sum);
   }
   return {sum.cost, sum.gradient, sum.curvature};
@@ -134,22 +136,28 @@ TEST(SampsonKernel, SumsTheResidualsAndJacobiansOfTheMatches) {
   }
 }
 
-TEST(SampsonKernel, TheCostAloneHasTheSameBits) {
+TEST(SampsonKernel, CostAndGradientAloneAreTheSame) {
   for (const LossKind loss : kLosses) {
     const Problem problem = MakeProblem(7, 200);
     const MatchGroup& group = problem.matches.groups()[0];
     SampsonKernelOptions options;
     options.loss = loss;
-    MotionNormalEquations all, cost;
-    for (const bool derivatives : {true, false}) {
+    const auto sum = [&](SampsonParts parts) {
+      MotionNormalEquations equations;
       AddNormalEquations(options, problem.matches, group, problem.matches.Pixels(group),
-                         problem.weights.data() + group.begin, problem.pose, derivatives,
-                         derivatives ? &all : &cost);
-    }
+                         problem.weights.data() + group.begin, problem.pose, parts, &equations);
+      return equations;
+    };
+    const MotionNormalEquations all = sum(SampsonParts::kAll);
+    const MotionNormalEquations gradient = sum(SampsonParts::kGradient);
+    const MotionNormalEquations cost = sum(SampsonParts::kCost);
     EXPECT_GT(cost.cost, 0.0);
     EXPECT_EQ(cost.cost, all.cost);
+    EXPECT_EQ(cost.cost, gradient.cost);
     EXPECT_EQ(cost.gradient.norm(), 0.0);
     EXPECT_GT(all.gradient.norm(), 0.0);
+    EXPECT_LT((gradient.gradient - all.gradient).norm(), 1e-12 * all.gradient.norm());
+    EXPECT_EQ(gradient.curvature.norm(), 0.0);
   }
 }
 
@@ -193,10 +201,10 @@ TEST(SampsonKernel, EveryPathGivesTheSameBits) {
       SampsonKernelOptions options;
       options.loss = loss;
       SampsonSums baseline{}, avx2{};
-      SumSampson(options, pixels, problem.weights.data(), F.data(), 1e-20, true, &baseline,
-                 CpuPath::kBaseline);
-      SumSampson(options, pixels, problem.weights.data(), F.data(), 1e-20, true, &avx2,
-                 CpuPath::kAvx2);
+      SumSampson(options, pixels, problem.weights.data(), F.data(), 1e-20, SampsonParts::kAll,
+                 &baseline, CpuPath::kBaseline);
+      SumSampson(options, pixels, problem.weights.data(), F.data(), 1e-20, SampsonParts::kAll,
+                 &avx2, CpuPath::kAvx2);
       EXPECT_EQ(std::memcmp(&baseline, &avx2, sizeof(baseline)), 0);
       std::vector<double> a(pixels.size), b(pixels.size);
       GradientWeights(pixels, F.data(), 1e-3, a.data(), CpuPath::kBaseline);
@@ -237,11 +245,11 @@ TEST(SampsonKernel, AMatchAtAnEpipoleAddsNothing) {
   const double zero[kKernelPadding] = {}, one[1] = {1.0};
   const PixelArrays pixels{zero, zero, zero, zero, 1};
   SampsonSums sums;
-  SumSampson(SampsonKernelOptions(), pixels, one, F, 1e-30, true, &sums);
+  SumSampson(SampsonKernelOptions(), pixels, one, F, 1e-30, SampsonParts::kAll, &sums);
   EXPECT_EQ(sums.cost, 0.0);
   for (const double h : sums.H) EXPECT_EQ(h, 0.0);
   const double none[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
-  SumSampson(SampsonKernelOptions(), pixels, one, none, 0.0, true, &sums);
+  SumSampson(SampsonKernelOptions(), pixels, one, none, 0.0, SampsonParts::kAll, &sums);
   EXPECT_EQ(sums.cost, 0.0);
   for (const double g : sums.g) EXPECT_EQ(g, 0.0);
 }
