@@ -21,8 +21,8 @@ constexpr double kPooledWeight = 30.0;
 
 // D is a mean of slowly varying terms: so many matches give it to some percent. A third of a
 // microsecond each.
-constexpr int kNoiseSample = 100;
-constexpr int kMinSampled = 30;
+constexpr int kNoiseSample = 60;
+constexpr int kMinSampled = 15;
 
 // Sums over inliers.
 struct LossSums {

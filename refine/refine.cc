@@ -14,7 +14,6 @@
 #include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/refine/observability.h"
 #include "rigel/refine/search/chance.h"
-#include "rigel/refine/search/scale_search.h"
 #include "rigel/refine/search/shared_pixels.h"
 #include "rigel/refine/search/sign_and_scale.h"
 
@@ -41,8 +40,7 @@ class Refiner {
     summary_.num_rounds = 0;
     summary_.num_iterations = 0;
     Start();
-    const bool done = FitUntilSelectionStays(false) && SearchLength() && CheckSign() &&
-                      FitUntilSelectionStays(true);
+    const bool done = FitUntilSelectionStays(false) && CheckSign() && FitUntilSelectionStays(true);
     Describe(done);
     if (summary_.IsSolutionUsable()) *pose = fit_.pose;
     return summary_;
@@ -54,8 +52,6 @@ class Refiner {
   void GiveDirection();
   bool FitUntilSelectionStays(bool exclude_implausible);
   bool LengthIsOpen() const;
-  std::vector<double> LengthsOfDistance() const;
-  bool SearchLength();
   bool CheckSign();
   bool ExceedsChanceAt(double threshold_px) const;
   void Describe(bool done);
@@ -175,30 +171,6 @@ bool Refiner::LengthIsOpen() const {
                   [](const MatchGroup& group) { return group.camera1 == group.camera2; });
   return all_intra ||
          RelativeScaleSigma(fitter_.MatchInformation(fit_), fit_.pose) > kScaleObservableRatio;
-}
-
-// The lengths of b at which t has the stated distance: |l d + c - R c| = D. In tight turns two.
-std::vector<double> Refiner::LengthsOfDistance() const {
-  std::vector<double> lengths;
-  if (!prior_.distance || !(prior_.distance_sigma > 0)) return lengths;
-  const Eigen::Vector3d k = point_ - fit_.pose.R * point_;
-  const double along = fit_.pose.t.normalized().dot(k);
-  const double root2 = along * along - k.squaredNorm() + *prior_.distance * *prior_.distance;
-  if (!(root2 >= 0)) return lengths;
-  for (const double sign : {1.0, -1.0}) {
-    const double length = sign * std::sqrt(root2) - along;
-    if (length > 0) lengths.push_back(length);
-  }
-  return lengths;
-}
-
-bool Refiner::SearchLength() {
-  if (!GoesOn() || !LengthIsOpen()) return true;
-  if (!SearchScale(matches_, Threshold(), fit_.noise.sigma_px, fitter_.PriorAt(fit_.pose),
-                   LengthsOfDistance(), &fit_.pose)) {
-    return true;
-  }
-  return FitUntilSelectionStays(false);
 }
 
 // With another sign or length, t is not at a minimum: a fit from there.

@@ -57,8 +57,6 @@ MECHANISMS = (
      "engine_options.loss = options_.loss;", "engine_options.loss = LossKind::kNone;"),
     ("direction of the start", "refine/refine.cc",
      "if (LengthIsOpen()) ResolveSignAndScale(sign_subset_, Threshold(), &fit_.pose);\n}", "}"),
-    ("lengths as starts", "refine/refine.cc",
-     "if (!GoesOn() || !LengthIsOpen()) return true;", "if (GoesOn()) return true;"),
     ("sign of the fit", "refine/refine.cc",
      "bool Refiner::CheckSign() {\n  if (!GoesOn()) return true;",
      "bool Refiner::CheckSign() {\n  if (GoesOn()) return true;"),

@@ -193,24 +193,29 @@ class Estimator {
     }
   }
 
-  // Counts the outliers of each camera pair in its band.
+  // Counts the errors below the gates, and the outliers of each camera pair in its band.
   void Count() {
+    all_ = Histogram(*std::max_element(model_.gate_of.begin(), model_.gate_of.end()));
+    own_.clear();
     for (size_t g = 0; g < model_.gate_of.size(); ++g) {
       const MatchGroup& group = matches_.groups()[g];
+      own_.emplace_back(model_.gate_of[g]);
       const double begin = kBandBegin * model_.gate_of[g];
       const double end = kBandEnd * model_.gate_of[g];
       int in_band = 0;
       for (int k = group.begin; k < group.begin + group.size; ++k) {
-        in_band += static_cast<int>(px_[k] >= begin) & static_cast<int>(px_[k] < end);
+        const double px = px_[k];
+        all_.Add(px);
+        own_[g].Add(px);
+        in_band += static_cast<int>(px >= begin) & static_cast<int>(px < end);
       }
       model_.outliers_per_px[g] = in_band / (end - begin);
     }
   }
 
   void Estimate() {
-    const double largest = *std::max_element(model_.gate_of.begin(), model_.gate_of.end());
-    Histogram all(largest);
-    for (const double px : px_) all.Add(px);
+    const Histogram& all = all_;
+    const double largest = all.gate();
     if (all.total() == 0) return;
     const double outliers_per_px =
         std::accumulate(model_.outliers_per_px.begin(), model_.outliers_per_px.end(), 0.0);
@@ -237,9 +242,7 @@ class Estimator {
     std::vector<double> logs(num_groups, log_of_all), variances(num_groups, 1.0);
     double squares = 0.0, expected = 0.0, total = 0.0;
     for (size_t g = 0; g < num_groups && num_groups > 1; ++g) {
-      const MatchGroup& group = matches_.groups()[g];
-      Histogram own(model_.gate_of[g]);
-      for (int k = group.begin; k < group.begin + group.size; ++k) own.Add(px_[k]);
+      const Histogram& own = own_[g];
       if (own.total() < 2) continue;
       const double n = own.total();
       // Errors that fill the gate are no noise: the camera pair does not fit.
@@ -275,6 +278,8 @@ class Estimator {
   const MatchErrors& errors_;
   int num_parameters_;
   std::vector<double> px_;  // the errors; infinite behind a camera
+  Histogram all_{1.0};
+  std::vector<Histogram> own_;  // of the camera pairs
   double least_gate_ = 0.0;
   double fitted_share_ = 0.0;  // of the errors: parameters that were fitted to them
   double correction_ = 1.0;    // residuals are smaller than the noise: n - p of n

@@ -78,7 +78,7 @@ TEST(Origin, TheRigsMotionIsTheSameInEveryBodyFrame) {
                     kSigmas * reference.refine.rotation_sigma);
         EXPECT_NEAR(r.rig_direction_sigma, reference.refine.rig_direction_sigma,
                     kSigmas * reference.refine.rig_direction_sigma);
-        EXPECT_NEAR(moved.t.norm(), b.t.norm(), 10 * frame.tolerance);
+        EXPECT_NEAR(moved.t.norm(), b.t.norm(), kSigmas * r.length_sigma * b.t.norm());
         // The information of an edge is that of the reference in the other frame.
         Matrix6d turn = Matrix6d::Zero();
         turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = frame.axes.transpose();
