@@ -1,5 +1,6 @@
-// Accuracy regression: median errors of raw and refined motions in a few settings of the scene and
-// at one point of each experiment, against expected.json beside this file.
+// Accuracy regression: median errors of raw and refined motions in a few settings of the scene, of
+// five rigs in the street and at one point of each experiment, against expected.json beside this
+// file.
 //
 //   accuracy_test                 compares; names each deviation
 //   accuracy_test --update        rewrites expected.json (test/accuracy/update.sh builds first)
@@ -25,6 +26,7 @@
 #include "rigel/problems/evaluation/comparison.h"
 #include "rigel/problems/experiments/experiment.h"
 #include "rigel/problems/scenes/synthetic.h"
+#include "rigel/test/accuracy/street_rigs.h"
 
 namespace rigel {
 namespace {
@@ -86,6 +88,29 @@ const Setting kSettings[] = {
     {"planar-10deg-half-3pt-noise", kPlanar, 10, kY, 0.5, 0.5, "3pt", kFull},
 };
 
+// Named street-RIG[-body]: with the body's axes as prior in "body" settings, else without prior.
+// The noise is unknown, |t| is unknown, 20 percent are outliers. Turns are of 1 degree.
+struct StreetSetting {
+  const char* name;
+  StreetOptions (*street)();
+  bool body_prior;
+  double inter_share;
+};
+void PrintTo(const StreetSetting& setting, std::ostream* stream) { *stream << setting.name; }
+
+const StreetSetting kStreetSettings[] = {
+    {"street-front_camera", &FrontCamera, false, 0.0},
+    {"street-front_camera-body", &FrontCamera, true, 0.0},
+    {"street-front_stereo", &FrontStereo, false, 0.3},
+    {"street-front_stereo-body", &FrontStereo, true, 0.3},
+    {"street-four_cameras", &FourCameras, false, 0.0},
+    {"street-four_cameras-body", &FourCameras, true, 0.0},
+    {"street-six_cameras", &SixCameras, false, 0.0},
+    {"street-six_cameras-body", &SixCameras, true, 0.0},
+    {"street-camera_frame_stereo", &CameraFrameStereo, false, 0.3},
+    {"street-camera_frame_stereo-body", &CameraFrameStereo, true, 0.3},
+};
+
 // To 4 significant digits, so that the file stays the same when nothing has changed.
 double Rounded(double value) {
   char text[32];
@@ -133,6 +158,39 @@ Json Measure(const Setting& setting) {
   const SolverSummary summary =
       Summarize(setting.solver, "all", RunSolver(pairs, options, kThreads, {}));
   return Medians(summary);
+}
+
+// Medians, RMS errors over RMS bounds, and the mean NEES over degrees of freedom.
+Json MeasureStreet(const StreetSetting& setting) {
+  StreetOptions street = setting.street();
+  street.outlier_share = 0.2;
+  street.inter_share = setting.inter_share;
+  PriorSourceOptions prior;
+  prior.source = PriorSource::kBody;
+  prior.down = street.axes.down;
+  prior.forward = street.axes.forward;
+  std::vector<FramePair> pairs(kPairs);
+  for (int k = 0; k < kPairs; ++k) {
+    std::string error;
+    EXPECT_TRUE(MakeStreetPair(street, k, &pairs[k], &error)) << error;
+    if (setting.body_prior) {
+      EXPECT_TRUE(ApplyPriorSource(prior, k, &pairs[k], &error)) << error;
+    } else {
+      pairs[k].prior = MotionPrior();
+    }
+  }
+  const SolverSummary summary =
+      Summarize("auto", "all", RunSolver(pairs, EstimateOptions(), kThreads, {}));
+  Json measured = Medians(summary);
+  const auto put_efficiency = [&](const char* name, const std::optional<Statistics>& error,
+                                  const std::optional<Statistics>& bound) {
+    if (error && bound) measured[name] = Rounded(error->rms / bound->rms);
+  };
+  put_efficiency("bound_share_rotation", summary.refined_rotation_deg, summary.bound_rotation_deg);
+  put_efficiency("bound_share_rig_direction", summary.refined_rig_direction_deg,
+                 summary.bound_rig_direction_deg);
+  if (summary.nees) measured["nees"] = Rounded(summary.nees->ratio);
+  return measured;
 }
 
 // The experiments, thinned: the largest value of the grid, random motion. 6pt-stewenius would take
@@ -186,8 +244,7 @@ double Tolerance(const Json& tolerances, const std::string& quantity, const Json
 
 class Accuracy : public testing::TestWithParam<Setting> {};
 
-std::string TestName(const Setting& setting) {
-  std::string name = setting.name;
+std::string TestName(std::string name) {
   for (char& c : name) {
     if (c == '-') c = '_';
   }
@@ -195,7 +252,7 @@ std::string TestName(const Setting& setting) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scene, Accuracy, testing::ValuesIn(kSettings),
-                         [](const auto& setting) { return TestName(setting.param); });
+                         [](const auto& setting) { return TestName(setting.param.name); });
 
 void ExpectAsExpected(const std::string& name, const Json& measured) {
   const Json file = ReadExpected();
@@ -217,6 +274,15 @@ void ExpectAsExpected(const std::string& name, const Json& measured) {
 
 TEST_P(Accuracy, MediansAreAsExpected) { ExpectAsExpected(GetParam().name, Measure(GetParam())); }
 
+class StreetAccuracy : public testing::TestWithParam<StreetSetting> {};
+
+INSTANTIATE_TEST_SUITE_P(Rigs, StreetAccuracy, testing::ValuesIn(kStreetSettings),
+                         [](const auto& setting) { return TestName(setting.param.name); });
+
+TEST_P(StreetAccuracy, FiguresAreAsExpected) {
+  ExpectAsExpected(GetParam().name, MeasureStreet(GetParam()));
+}
+
 class ExperimentAccuracy : public testing::TestWithParam<std::string> {};
 
 INSTANTIATE_TEST_SUITE_P(Experiments, ExperimentAccuracy, testing::ValuesIn(ExperimentNamesHere()),
@@ -235,6 +301,7 @@ TEST(AccuracyData, HasTheSettingsOfTheTestAndNoOthers) {
   const Json file = ReadExpected();
   std::map<std::string, int> names;
   for (const Setting& setting : kSettings) EXPECT_EQ(++names[setting.name], 1) << setting.name;
+  for (const StreetSetting& street : kStreetSettings) EXPECT_EQ(++names[street.name], 1);
   const Json all = file.value("medians", Json::object());
   const Json tolerances = file.value("tolerances", Json::object());
   int num_of_experiments = 0;
@@ -297,6 +364,7 @@ int Update() {
   const Json before = file.value("medians", Json::object());
   Json all = Json::object();
   for (const Setting& setting : kSettings) all[setting.name] = Measure(setting);
+  for (const StreetSetting& street : kStreetSettings) all[street.name] = MeasureStreet(street);
   for (const std::string& name : ExperimentNamesHere()) all.update(MeasureExperiment(name));
   file["medians"] = all;
   int changed = 0;
