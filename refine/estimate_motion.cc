@@ -33,6 +33,9 @@ constexpr EnumName<EstimateStatus> kStatusNames[] = {
     {EstimateStatus::kNotRefined, "not refined"},
     {EstimateStatus::kNoConsensus, "no consensus"}};
 
+// The threshold of a search, and of doubts, in sigmas of the noise.
+constexpr double kThresholdSigmas = 3.0;
+
 double MillisecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
       .count();
@@ -242,7 +245,6 @@ void Estimator::Refine() {
 
 // True if the search has to be made again, with a threshold for the noise that was found.
 bool Estimator::SearchAgain() {
-  constexpr double kThresholdSigmas = 3.0;
   constexpr double kTooSmall = 1.5;
   if (options_.ransac.threshold_px != kAutoThresholdPx || !Refined() || stop_.Asked()) return false;
   const double threshold = kThresholdSigmas * estimate_.refine.noise_px;
@@ -274,9 +276,15 @@ void Estimator::Judge() {
     if (estimate_.stopped != StopReason::kNone) estimate_.message += "; " + stop_.Message();
     return;
   }
+  // The noise of the noisiest camera pair, once it is known.
+  double noise_px = 0.0;
+  for (const CameraPairFit& fit : estimate_.refine.camera_pairs) {
+    noise_px = std::max(noise_px, fit.noise_px);
+  }
+  const double threshold_px = noise_px > 0 ? kThresholdSigmas * noise_px : ransac_.threshold_px;
   const Doubt doubt =
       FindDoubt(pair_.prior, *search_.solver, MotionOfPoint(estimate_.pose, centre_), matches_,
-                ransac_.threshold_px);
+                threshold_px, noise_px);
   estimate_.doubtful = doubt.Any();
   estimate_.doubt = doubt.Reason();
   if (estimate_.status == EstimateStatus::kSuccess && options_.refine_motion &&

@@ -8,12 +8,13 @@
 #include "rigel/core/angles.h"
 #include "rigel/core/grouped_matches.h"
 #include "rigel/core/metrics.h"
+#include "rigel/core/pixel_unit.h"
 #include "rigel/minimal/catalogue.h"
 
 namespace rigel {
 
 Doubt FindDoubt(const MotionPrior& prior, const SolverInfo& solver, const Pose& pose,
-                const GroupedMatches& matches, double threshold_px) {
+                const GroupedMatches& matches, double threshold_px, double noise_px) {
   constexpr double kNoBound = std::numeric_limits<double>::infinity();
   Doubt doubt;
   doubt.num_matches = matches.size();
@@ -21,6 +22,8 @@ Doubt FindDoubt(const MotionPrior& prior, const SolverInfo& solver, const Pose& 
   matches.Score(pose, 2.0 * threshold_px, kNoBound, &doubt.num_loose_inliers);
   doubt.few_inliers = doubt.num_inliers < kDoubtfulInlierRatio * doubt.num_matches;
   doubt.loose_residuals = doubt.num_loose_inliers > kDoubtfulGrowth * doubt.num_inliers;
+  doubt.noise_px = noise_px;
+  doubt.large_noise = noise_px > kDoubtfulNoisePx * PixelUnit(matches.rig());
   Alignment alignment;
   std::string error;
   if (solver.prior != PriorKind::kNone && MakeAlignment(prior, solver.prior, &alignment, &error)) {
@@ -44,6 +47,7 @@ std::string Doubt::Reason() const {
   if (loose_residuals) {
     add("%d more agree at twice the threshold", num_loose_inliers - num_inliers);
   }
+  if (large_noise) add("their noise is %.1f px", noise_px);
   if (leaves_prior) add("the motion turned %.1f deg away from the prior", RadToDeg(from_prior));
   return reason;
 }

@@ -6,6 +6,7 @@
 
 #include "rigel/core/grouped_matches.h"
 #include "rigel/minimal/catalogue.h"
+#include "rigel/refine/estimate_motion.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -45,6 +46,19 @@ TEST(Doubt, TellsFewInliersLooseResidualsAndAMotionThatLeavesThePrior) {
   EXPECT_TRUE(doubt(axis, turned, kThresholdPx).leaves_prior);
   EXPECT_THAT(doubt(axis, turned, kThresholdPx).Reason(), HasSubstr("away from the prior"));
   EXPECT_FALSE(doubt(*FindSolver("5pt+1"), turned, kThresholdPx).Any());
+}
+
+// The threshold follows the noise, so errors of any size are below it.
+TEST(Doubt, TellsNoiseThatNoMatcherHas) {
+  for (const double noise_px : {0.5, 2.0, 4.0}) {
+    SceneOptions scene;
+    scene.noise_px = noise_px;
+    const MotionEstimate e = EstimateMotion(EstimateOptions(), ScenePair(scene, 0));
+    EXPECT_EQ(e.doubtful, noise_px > kDoubtfulNoisePx) << e.doubt;
+    if (e.doubtful) {
+      EXPECT_THAT(e.doubt, HasSubstr("noise is"));
+    }
+  }
 }
 
 }  // namespace
