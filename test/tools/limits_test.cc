@@ -12,12 +12,20 @@ using testing::Each;
 using testing::HasSubstr;
 using testing::StartsWith;
 
+// g++ has macros for its sanitizers, clang has features.
 #if defined(__SANITIZE_ADDRESS__)
-constexpr bool kSanitized = true;
+constexpr bool kAddressSanitizer = true;
 #elif defined(__has_feature)
-constexpr bool kSanitized = __has_feature(address_sanitizer);
+constexpr bool kAddressSanitizer = __has_feature(address_sanitizer);
 #else
-constexpr bool kSanitized = false;
+constexpr bool kAddressSanitizer = false;
+#endif
+#if defined(__SANITIZE_THREAD__)
+constexpr bool kThreadSanitizer = true;
+#elif defined(__has_feature)
+constexpr bool kThreadSanitizer = __has_feature(thread_sanitizer);
+#else
+constexpr bool kThreadSanitizer = false;
 #endif
 
 class LimitsTest : public ToolsTest {
@@ -41,7 +49,9 @@ class LimitsTest : public ToolsTest {
 };
 
 TEST_F(LimitsTest, AFileThatThereIsNoMemoryForDoesNotStopTheOthers) {
-  if (kSanitized) GTEST_SKIP() << "the sanitizer needs more memory than any limit leaves";
+  if (kAddressSanitizer || kThreadSanitizer) {
+    GTEST_SKIP() << "the sanitizer needs more memory than any limit leaves";
+  }
   std::string text = ReadText(matches_ + "/000000.matches");
   text.resize(text.find("columns "));
   text += "matches 1000000\n";
@@ -90,7 +100,7 @@ TEST_F(LimitsTest, FilesOfNoEndAreToldAndNotReadToIt) {
 }
 
 TEST_F(LimitsTest, WithFewerThreadsTheWorkGoesOn) {
-  if (kSanitized) GTEST_SKIP() << "the leak check starts a process of its own";
+  if (kAddressSanitizer) GTEST_SKIP() << "the leak check starts a process of its own";
   const Args args = {"--matches=" + matches_, "--no_times", "--json=-"};
   const Outcome one = RunTool("estimate", args);
   const Outcome run = RunAlone("estimate", args + Args{"--threads=1024"});
