@@ -33,7 +33,7 @@ constexpr EnumName<EstimateStatus> kStatusNames[] = {
     {EstimateStatus::kNotRefined, "not refined"},
     {EstimateStatus::kNoConsensus, "no consensus"}};
 
-// The threshold of a search, and of doubts, in sigmas of the noise.
+// The threshold of doubts, in sigmas of the noise.
 constexpr double kThresholdSigmas = 3.0;
 
 double MillisecondsSince(std::chrono::steady_clock::time_point start) {
@@ -85,13 +85,7 @@ class Estimator {
     GroupMatches();
     Search();
     if (!TakeMotion()) return estimate_;
-    if (options_.refine_motion) {
-      Refine();
-      if (SearchAgain()) {
-        Search();
-        if (TakeMotion()) Refine();
-      }
-    }
+    if (options_.refine_motion) Refine();
     Judge();
     return estimate_;
   }
@@ -104,7 +98,6 @@ class Estimator {
   void Search();
   bool TakeMotion();
   void Refine();
-  bool SearchAgain();
   void Judge();
   void CheckRig(const Doubt& doubt);
   bool ExceedsChanceUnrefined() const;
@@ -243,18 +236,6 @@ void Estimator::Refine() {
   estimate_.message = estimate_.refine.message;
 }
 
-// True if the search has to be made again, with a threshold for the noise that was found.
-bool Estimator::SearchAgain() {
-  constexpr double kTooSmall = 1.5;
-  if (options_.ransac.threshold_px != kAutoThresholdPx || !Refined() || stop_.Asked()) return false;
-  const double threshold = kThresholdSigmas * estimate_.refine.noise_px;
-  if (!(threshold > kTooSmall * ransac_.threshold_px) || !estimate_.refine.exceeds_chance) {
-    return false;
-  }
-  ransac_.threshold_px = threshold;
-  return true;
-}
-
 bool Estimator::ExceedsChanceUnrefined() const {
   return ExceedsChance(matches_, MotionOfPoint(estimate_.pose, centre_), estimate_.num_inliers,
                        matches_.size(), ransac_.threshold_px,
@@ -302,7 +283,7 @@ void Estimator::CheckRig(const Doubt& doubt) {
     const MotionEstimate e = EstimateMotion(again, other);
     return e.status == EstimateStatus::kSuccess ? e.num_inliers : 0;
   };
-  const bool prior_is_doubted = doubt.Any() && search_.solver->prior != PriorKind::kNone;
+  const bool prior_is_doubted = doubt.SaysWrong() && search_.solver->prior != PriorKind::kNone;
   estimate_.rig_doubts = FindRigDoubts(pair_, !options_.refine.hold_distance, prior_is_doubted,
                                        estimate_.refine, inliers_with);
 }

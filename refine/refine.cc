@@ -40,7 +40,8 @@ class Refiner {
     summary_.num_rounds = 0;
     summary_.num_iterations = 0;
     Start();
-    const bool done = FitUntilSelectionStays(false) && CheckSign() && FitUntilSelectionStays(true);
+    const bool done = FitUntilSelectionStays(false) && TryTypicalLength() && CheckSign() &&
+                      FitUntilSelectionStays(true);
     Describe(done);
     if (summary_.IsSolutionUsable()) *pose = fit_.pose;
     return summary_;
@@ -52,6 +53,8 @@ class Refiner {
   void GiveDirection();
   bool FitUntilSelectionStays(bool exclude_implausible);
   bool LengthIsOpen() const;
+  double CostOf(const Fit& fit) const;
+  bool TryTypicalLength();
   bool CheckSign();
   bool ExceedsChanceAt(double threshold_px) const;
   void Describe(bool done);
@@ -171,6 +174,33 @@ bool Refiner::LengthIsOpen() const {
                   [](const MatchGroup& group) { return group.camera1 == group.camera2; });
   return all_intra ||
          RelativeScaleSigma(fitter_.MatchInformation(fit_), fit_.pose) > kScaleObservableRatio;
+}
+
+// Of all matches and of the prior, pixels^2.
+double Refiner::CostOf(const Fit& fit) const {
+  PriorResiduals::Residuals r;
+  fitter_.PriorAt(fit.pose).Evaluate(fit.pose, &r, nullptr);
+  return matches_.ScoreInFront(fit.pose, Threshold(), std::numeric_limits<double>::infinity(),
+                               nullptr) +
+         fit.noise.sigma_px * fit.noise.sigma_px * r.squaredNorm();
+}
+
+// Where the matches leave the length open, the start's is a guess. From a wrong one the fit can end
+// at a false minimum, with |b| as small as the arms of the cameras.
+bool Refiner::TryTypicalLength() {
+  constexpr double kNear = 1.0;  // of the logarithm: a standard deviation of the weak prior
+  if (!GoesOn() || !LengthIsOpen()) return true;
+  const double ratio = options_.typical_length / fit_.pose.t.norm();
+  if (std::abs(std::log(ratio)) < kNear) return true;
+  const Fit found = fit_;
+  const RefineSummary summary = summary_;
+  const double cost = CostOf(found);
+  fit_.pose.t *= ratio;
+  if (!FitUntilSelectionStays(false) || !(CostOf(fit_) < cost)) {
+    fit_ = found;
+    summary_ = summary;
+  }
+  return true;
 }
 
 // With another sign or length, t is not at a minimum: a fit from there.

@@ -45,8 +45,6 @@ MECHANISMS = (
      "model_.outliers_per_px[g] = in_band / (end - begin);", "model_.outliers_per_px[g] = 0.0;"),
     ("mean square of the core", "refine/search/noise_model.cc",
      "if (!(limit < gate) || !(limit > 0)) return sigma;", "return sigma;"),
-    ("search again", "refine/estimate_motion.cc",
-     "constexpr double kTooSmall = 1.5;", "constexpr double kTooSmall = 1e9;"),
     ("leverage", "refine/fit.cc",
      "bool judge = exclude_implausible && !previous.empty();", "bool judge = false;"),
     ("competition", "refine/search/shared_pixels.cc",

@@ -17,7 +17,7 @@ inline constexpr double kDoubtfulInlierRatio = 0.5;
 inline constexpr double kDoubtfulPriorDeg = 2.0;
 inline constexpr double kDoubtfulGrowth = 1.1;
 // Times PixelUnit(). The gate allows 3.
-inline constexpr double kDoubtfulNoisePx = 2.5;
+inline constexpr double kDoubtfulNoisePx = 2.9;
 struct Doubt {
   // Less than kDoubtfulInlierRatio of the matches agree.
   bool few_inliers = false;
