@@ -12,20 +12,15 @@ using testing::Each;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-// g++ has macros for its sanitizers, clang has features.
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kAddressSanitizer = true;
-#elif defined(__has_feature)
-constexpr bool kAddressSanitizer = __has_feature(address_sanitizer);
+#ifdef RIGEL_SANITIZED
+constexpr bool kSanitized = true;  // the programs
 #else
-constexpr bool kAddressSanitizer = false;
+constexpr bool kSanitized = false;
 #endif
-#if defined(__SANITIZE_THREAD__)
-constexpr bool kThreadSanitizer = true;
-#elif defined(__has_feature)
-constexpr bool kThreadSanitizer = __has_feature(thread_sanitizer);
+#ifdef RIGEL_LEAK_CHECK
+constexpr bool kLeakCheck = true;
 #else
-constexpr bool kThreadSanitizer = false;
+constexpr bool kLeakCheck = false;
 #endif
 
 class LimitsTest : public ToolsTest {
@@ -49,9 +44,7 @@ class LimitsTest : public ToolsTest {
 };
 
 TEST_F(LimitsTest, AFileThatThereIsNoMemoryForDoesNotStopTheOthers) {
-  if (kAddressSanitizer || kThreadSanitizer) {
-    GTEST_SKIP() << "the sanitizer needs more memory than any limit leaves";
-  }
+  if (kSanitized) GTEST_SKIP() << "a sanitizer needs more memory than any limit leaves";
   std::string text = ReadText(matches_ + "/000000.matches");
   text.resize(text.find("columns "));
   text += "matches 1000000\n";
@@ -100,7 +93,7 @@ TEST_F(LimitsTest, FilesOfNoEndAreToldAndNotReadToIt) {
 }
 
 TEST_F(LimitsTest, WithFewerThreadsTheWorkGoesOn) {
-  if (kAddressSanitizer) GTEST_SKIP() << "the leak check starts a process of its own";
+  if (kLeakCheck) GTEST_SKIP() << "the leak check starts a process of its own";
   const Args args = {"--matches=" + matches_, "--no_times", "--json=-"};
   const Outcome one = RunTool("estimate", args);
   const Outcome run = RunAlone("estimate", args + Args{"--threads=1024"});
