@@ -24,17 +24,17 @@ static_assert(kSameLayoutEverywhere<CramerRaoBound>, "no member of CramerRaoBoun
 // (what is known exactly left out: the prior with kPrior and kPriorDepths, |t| with
 // hold_distance).
 //
-// Information: J'J / sigma^2, J of the Sampson errors, sigma the pair's noise_px; matches that
-// share a pixel are weighted by the inverse of the covariance of their errors, so that a match that
-// is repeated counts once. To it come the weak length, the distance of the pair's prior if it has a
+// Information: J'J / sigma^2, J of the Sampson errors, sigma the pair's noise_px. Matches that
+// share a pixel are weighted by the inverse of the covariance of their errors, so a match that is
+// repeated counts once. To it come the weak length, the distance of the pair's prior if it has a
 // sigma, and, with options.use_prior, the rest of the prior.
 //
 // The inliers are those of columns.inlier; else the matches with an error below kBoundSigmas sigma
 // that are in front of their cameras. J is that of columns.exact; else what the noise of the
 // measured pixels adds is subtracted (noise_information.h).
 //
-// Nothing if the pair lacks truth or noise_px, the information is singular, more than a quarter of
-// it in any direction is subtracted (this holds to second order only), or more than
+// Nothing if the pair lacks truth or noise_px, or the information is singular. Nor if more than a
+// quarter of it in any direction is subtracted, which holds to second order only, or if more than
 // kMaxLinkedMatches are linked by the pixels they share.
 std::optional<CramerRaoBound> ComputeCramerRaoBound(const RefineOptions& options,
                                                     const FramePair& pair);

@@ -21,8 +21,8 @@
 //
 // `columns` names the columns of the rows, each once, in any order. Without it they are `i u v j u2
 // v2 score`, which all files have. The others are those of MatchColumns: `landmark sigma1 sigma2
-// depth1 depth_sigma a11 a12 a21 a22 affine_sigma inlier u0 v0 u20 v20`; of `a11 a12 a21 a22`, the
-// affine frame, all four or none, and so of `u0 v0 u20 v20`, the exact pixels.
+// depth1 depth_sigma a11 a12 a21 a22 affine_sigma inlier u0 v0 u20 v20`. Of `a11 a12 a21 a22`, the
+// affine frame, all four or none are there, and so of `u0 v0 u20 v20`, the exact pixels.
 //
 // `format`, `matches` and at least `camera 0` are required. Header lines come in any order
 // before `matches`; `#` starts a comment line, blank lines are ignored, columns are separated by
@@ -55,18 +55,17 @@ bool ReadMatchFile(const std::string& path, FramePair* pair, std::string* error)
 bool ParseMatches(std::string_view text, const std::string& name, FramePair* pair,
                   std::string* error);
 
-// The text of a match file. Every number is the shortest that reads back as the same double,
-// with two exceptions: rotations pass through a quaternion (they agree to about 1e-15), and a
-// sigma through degrees (it may move by one unit in the last place, once: a sigma that came from
-// a file is exact). Does not check `pair`. A column without an entry for each match is left out,
-// and so are all of a pair without matches.
+// The text of a match file. Every number is the shortest that reads back as the same double, with
+// two exceptions. Rotations pass through a quaternion; they agree to about 1e-15. A sigma passes
+// through degrees; it may move by one unit in the last place, once. Does not check `pair`. A column
+// without an entry for each match is left out, and so are all of a pair without matches.
 std::string FormatMatches(const FramePair& pair);
 
 // Writes `pair` to `path`, compressed if its name ends in ".gz": to a temporary file beside it,
 // which then takes its place, so that `path` is never half a file. False with a message if that
-// fails, or if a reader would not get the same pair back (a number that is not finite, an image
-// size of 0, one time without the other, a sequence name with a blank, ...); nothing is then
-// written. pair.name is not stored.
+// fails, or if a reader would not get the same pair back; nothing is then written. So it is with a
+// number that is not finite, an image size of 0, one time without the other, or a blank in the name
+// of the sequence. pair.name is not stored.
 bool WriteMatchFile(const std::string& path, const FramePair& pair, std::string* error);
 
 // The text as a file of that name has it: compressed by gzip if the name ends in ".gz".

@@ -8,7 +8,7 @@
 // body_from_camera. `model` and `parameters` are COLMAP's names, in lower case, and its orders:
 // pinhole, simple_pinhole, simple_radial, radial, opencv, full_opencv. Files without `format` may
 // state a camera by the older keys instead of `parameters`: `fx`, `fy`, `cx`, `cy` and
-// `distortion`, with a model `pinhole`, or one that begins with `radial` (k1 k2 k3) or `brown`
+// `distortion`. Their model is `pinhole`, or begins with `radial` (k1 k2 k3) or `brown`
 // (k1 k2 p1 p2 k3). Other keys are not looked at.
 #ifndef RIGEL_PROBLEMS_IO_RIG_FILE_H_
 #define RIGEL_PROBLEMS_IO_RIG_FILE_H_
@@ -34,9 +34,9 @@ struct RigFile {
   int num_undistorted = 0;
 };
 
-// False with a message of one line, which names the file, the camera and what was expected, if the
-// file cannot be read, is no such JSON, or has a model that is not one of these (fisheye, omni).
-// *rig is then unchanged. The rig passes Rig::IsValid, and its image sizes are positive.
+// False if the file cannot be read, is no such JSON, or has a model that is not one of these
+// (fisheye, omni). The message of one line names the file, the camera and what was expected. *rig
+// is then unchanged. The rig passes Rig::IsValid, and its image sizes are positive.
 bool ReadRigFile(const std::string& path, RigFile* rig, std::string* error);
 
 // The same for text in memory; `name` stands for the path in messages.

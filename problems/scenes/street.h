@@ -2,7 +2,7 @@
 //
 // The ground is a plane below the body's origin. To either side is a facade, parallel to the car at
 // time 1, at 7-13 m from the middle of the cameras and 12 m high. Image points are uniform in the
-// images of view 1, over all cameras alike; a point is on the nearest of: the ground, a facade, and
+// images of view 1, over all cameras alike. A point is on the nearest of: the ground, a facade, and
 // a far point at a distance that is log-uniform in 30-200 m. A quarter of the points are clutter:
 // log-uniform from 2 m on, nearer than these. A match is kept if its point is in front of the
 // camera and in its image, at each of the two times. So the matches are spread over the cameras in

@@ -1,20 +1,21 @@
 // Synthetic frame pairs: the scene of the benchmarks.
 //
 // Two forward cameras at (-0.5, 0, 0) and (0.5, 0, 0) m, each moved by N(0, 0.05 m) and turned by
-// N(0, 0.1 rad) per axis; 640 x 480 pixels, focal length 400, principal point at the centre. Image
-// points uniform in view 1, depth uniform in 5-30 m, kept if they fall into the image of view 2.
+// N(0, 0.1 rad) per axis. They have 640 x 480 pixels, focal length 400, and the principal point at
+// the centre. Image points uniform in view 1, depth uniform in 5-30 m, kept if they fall into the
+// image of view 2.
 //
 // A ring, where one is asked for: 1 to 16 such cameras on a circle of 1 m radius in the plane
-// perpendicular to the body's down, at equal angles, the first ahead, each facing outwards with its
-// image's y down. Exactly so. Matches between cameras are of neighbours.
+// perpendicular to the body's down. They are at equal angles, the first ahead, each facing outwards
+// with its image's y down. Exactly so. Matches between cameras are of neighbours.
 //
 // A car, where one is asked for: a box 4.5 m long, 1.8 m wide and 1.5 m high, 5-15 m in front of
 // the rig, with points uniform in it. Between the frames it moves by 0.5-2 m over the ground, in
 // any direction, and turns by up to 3 degrees about its vertical.
 //
-// Scores as of a matcher with Lowe's ratio test at 0.8, distributed as SIFT's on KITTI 06: 0.8
-// times the mean of two uniform numbers for true matches, the car's too, and times the largest of
-// eleven for outliers.
+// Scores as of a matcher with Lowe's ratio test at 0.8, distributed as SIFT's on KITTI 06. That of
+// a true match, the car's too, is 0.8 times the mean of two uniform numbers, that of an outlier 0.8
+// times the largest of eleven.
 #ifndef RIGEL_PROBLEMS_SCENES_SYNTHETIC_H_
 #define RIGEL_PROBLEMS_SCENES_SYNTHETIC_H_
 

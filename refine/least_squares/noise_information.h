@@ -3,8 +3,8 @@
 // J, the derivative of a Sampson error r by the motion, depends on the pixels p. With noise of
 // sigma on each coordinate of p, J'J / sigma^2 is in the mean larger than at the exact pixels: by
 // D = sum (dJ/dp)(dJ/dp)', which does not depend on sigma. In scenes of small depth range D is the
-// larger part. With H = J'J / sigma^2 at the measured pixels, H - D is the curvature of the cost in
-// the mean, and H the variance of its gradient: the covariance of the motion is
+// larger part. Let H be J'J / sigma^2 at the measured pixels. The curvature of the cost is H - D in
+// the mean, and the variance of its gradient is H. So the covariance of the motion is
 // (H - D)^-1 H (H - D)^-1.
 //
 // Derivatives by the motion are those of the perturbation R <- Exp(d) R, t <- t + e: d (radians),
