@@ -21,23 +21,13 @@ size_t Hash(const ImagePoint& p) {
   return static_cast<size_t>(h ^ (h >> 29));
 }
 
-// The least match of the set of match k; sets are trees of links to a lesser match.
-int Root(std::vector<int>* link, int k) {
-  while ((*link)[k] != k) k = (*link)[k] = (*link)[(*link)[k]];
-  return k;
-}
-
-// Links the matches of the mask that have the same point.
-void LinkSame(const SamePoints& same, const std::vector<char>& mask, std::vector<int>* link) {
+// Joins the matches of the mask that have the same point.
+void JoinSame(const SamePoints& same, const std::vector<char>& mask, DisjointSets* sets) {
   for (const int first : same.firsts()) {
     int before = -1;
     for (int k = first; k >= 0; k = same.Next(k)) {
       if (!mask[k]) continue;
-      if (before >= 0) {
-        const int a = Root(link, before);
-        const int b = Root(link, k);
-        (*link)[std::max(a, b)] = std::min(a, b);
-      }
+      if (before >= 0) sets->Join(before, k);
       before = k;
     }
   }
@@ -73,6 +63,19 @@ SamePoints::SamePoints(const std::vector<Match>& matches, bool at_time2)
   }
 }
 
+DisjointSets::DisjointSets(int n) : link_(n) { std::iota(link_.begin(), link_.end(), 0); }
+
+int DisjointSets::LeastOf(int k) {
+  while (link_[k] != k) k = link_[k] = link_[link_[k]];
+  return k;
+}
+
+void DisjointSets::Join(int a, int b) {
+  a = LeastOf(a);
+  b = LeastOf(b);
+  link_[std::max(a, b)] = std::min(a, b);
+}
+
 bool SharePixel1(const Match& a, const Match& b) {
   return ImagePointOf(a, false) == ImagePointOf(b, false);
 }
@@ -83,15 +86,14 @@ bool SharePixel2(const Match& a, const Match& b) {
 
 std::vector<std::vector<int>> LinkedMatches(const std::vector<Match>& matches,
                                             const std::vector<char>& mask) {
-  std::vector<int> link(matches.size());
-  std::iota(link.begin(), link.end(), 0);
-  LinkSame(SamePoints(matches, false), mask, &link);
-  LinkSame(SamePoints(matches, true), mask, &link);
+  DisjointSets linked(static_cast<int>(matches.size()));
+  JoinSame(SamePoints(matches, false), mask, &linked);
+  JoinSame(SamePoints(matches, true), mask, &linked);
   std::vector<std::vector<int>> sets;
   std::vector<size_t> set_of(matches.size());
   for (size_t k = 0; k < matches.size(); ++k) {
     if (!mask[k]) continue;
-    const int root = Root(&link, static_cast<int>(k));
+    const int root = linked.LeastOf(static_cast<int>(k));
     if (root == static_cast<int>(k)) {
       set_of[k] = sets.size();
       sets.emplace_back();

@@ -33,6 +33,17 @@ class SamePoints {
   std::vector<int> next_, last_, firsts_;
 };
 
+// Sets of numbers below n, each at first alone. The least of a set stands for it.
+class DisjointSets {
+ public:
+  explicit DisjointSets(int n);
+  int LeastOf(int k);
+  void Join(int a, int b);
+
+ private:
+  std::vector<int> link_;  // to a lesser number of the set
+};
+
 // True if `a` and `b` are of one key point at time 1, or at time 2: the same pixel of the same
 // camera, to the last bit.
 bool SharePixel1(const Match& a, const Match& b);

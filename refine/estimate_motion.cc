@@ -18,6 +18,7 @@
 #include "rigel/minimal/solvers/two_point_ackermann.h"
 #include "rigel/refine/search/chance.h"
 #include "rigel/refine/search/motion_search.h"
+#include "rigel/refine/search/noise_model.h"
 #include "rigel/refine/search/shared_pixels.h"
 #include "rigel/refine/solver_choice.h"
 
@@ -32,9 +33,6 @@ constexpr EnumName<EstimateStatus> kStatusNames[] = {
     {EstimateStatus::kNoSolution, "no solution"},
     {EstimateStatus::kNotRefined, "not refined"},
     {EstimateStatus::kNoConsensus, "no consensus"}};
-
-// The threshold of doubts, in sigmas of the noise.
-constexpr double kThresholdSigmas = 3.0;
 
 double MillisecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)

@@ -53,18 +53,17 @@ class Refiner {
   void GiveDirection();
   bool FitUntilSelectionStays(bool exclude_implausible);
   bool LengthIsOpen() const;
-  double CostOf(const Fit& fit) const;
+  double CostOf(const Pose& pose, double threshold_px, double sigma_px) const;
   bool TryTypicalLength();
   bool CheckSign();
   bool ExceedsChanceAt(double threshold_px) const;
   void Describe(bool done);
   void CountCameraPairs();
   bool GoesOn() { return !fitter_.stop()->Asked(); }
-  // For scores and signs: three sigma of the noisiest camera pair.
+  // For scores and signs: that of the noisiest camera pair.
   double Threshold() const {
-    constexpr double kSigmas = 3.0;
     const auto largest = std::max_element(fit_.noise.sigma_of.begin(), fit_.noise.sigma_of.end());
-    return kSigmas * *largest;
+    return kThresholdSigmas * *largest;
   }
 
   const RefineOptions& options_;
@@ -177,12 +176,12 @@ bool Refiner::LengthIsOpen() const {
 }
 
 // Of all matches and of the prior, pixels^2.
-double Refiner::CostOf(const Fit& fit) const {
+double Refiner::CostOf(const Pose& pose, double threshold_px, double sigma_px) const {
   PriorResiduals::Residuals r;
-  fitter_.PriorAt(fit.pose).Evaluate(fit.pose, &r, nullptr);
-  return matches_.ScoreInFront(fit.pose, Threshold(), std::numeric_limits<double>::infinity(),
-                               nullptr) +
-         fit.noise.sigma_px * fit.noise.sigma_px * r.squaredNorm();
+  fitter_.PriorAt(pose).Evaluate(pose, &r, nullptr);
+  constexpr double kNoBound = std::numeric_limits<double>::infinity();
+  return matches_.ScoreInFront(pose, threshold_px, kNoBound, nullptr) +
+         sigma_px * sigma_px * r.squaredNorm();
 }
 
 // Where the matches leave the length open, the start's is a guess. From a wrong one the fit can end
@@ -190,13 +189,16 @@ double Refiner::CostOf(const Fit& fit) const {
 bool Refiner::TryTypicalLength() {
   constexpr double kNear = 1.0;  // of the logarithm: a standard deviation of the weak prior
   if (!GoesOn() || !LengthIsOpen()) return true;
-  const double ratio = options_.typical_length / fit_.pose.t.norm();
+  const double typical =
+      prior_.distance.value_or(0.0) > 0 ? *prior_.distance : options_.typical_length;
+  const double ratio = typical / fit_.pose.t.norm();
   if (std::abs(std::log(ratio)) < kNear) return true;
   const Fit found = fit_;
   const RefineSummary summary = summary_;
-  const double cost = CostOf(found);
+  const double threshold = Threshold(), sigma = fit_.noise.sigma_px;  // the same for both
   fit_.pose.t *= ratio;
-  if (!FitUntilSelectionStays(false) || !(CostOf(fit_) < cost)) {
+  if (!FitUntilSelectionStays(false) ||
+      !(CostOf(fit_.pose, threshold, sigma) < CostOf(found.pose, threshold, sigma))) {
     fit_ = found;
     summary_ = summary;
   }

@@ -29,6 +29,8 @@ struct MatchErrors {
 // Residuals beyond this many sigma are more likely outliers (uniform in the image) than inliers
 // with Gaussian noise. A gate at 3 sigma costs 2 to 3 percent of the accuracy.
 inline constexpr double kGateSigmas = 6.0;
+// Thresholds of scores, signs and doubts: nearly all inliers are below, and few outliers.
+inline constexpr double kThresholdSigmas = 3.0;
 // The band in which outliers are counted, in gates.
 inline constexpr double kBandBegin = 8.0;
 inline constexpr double kBandEnd = 24.0;

@@ -125,18 +125,11 @@ std::vector<SharedPixel> SharedWithin(const std::vector<SharedPixel>& shared,
 }
 
 std::vector<int> LinkedSets(const std::vector<SharedPixel>& shared, int num_matches) {
-  std::vector<int> set(num_matches);  // links to an earlier match of the set
-  std::iota(set.begin(), set.end(), 0);
-  const auto root = [&set](int k) {
-    while (set[k] != k) k = set[k] = set[set[k]];
-    return k;
-  };
-  for (const SharedPixel& pair : shared) {
-    const int a = root(pair.first), b = root(pair.second);
-    set[std::max(a, b)] = std::min(a, b);
-  }
-  for (int k = 0; k < num_matches; ++k) set[k] = root(k);
-  return set;
+  DisjointSets linked(num_matches);
+  for (const SharedPixel& pair : shared) linked.Join(pair.first, pair.second);
+  std::vector<int> first_of(num_matches);
+  for (int k = 0; k < num_matches; ++k) first_of[k] = linked.LeastOf(k);
+  return first_of;
 }
 
 int ResolveCompetition(const GroupedMatches& matches, const std::vector<SharedPixel>& shared,

@@ -42,5 +42,15 @@ TEST(LinkedMatches, SetsOfSharedPixels) {
   EXPECT_THAT(LinkedMatches({}, {}), IsEmpty());
 }
 
+TEST(DisjointSets, TheLeastOfASetStandsForIt) {
+  DisjointSets sets(6);
+  sets.Join(4, 2);
+  sets.Join(5, 4);
+  sets.Join(1, 3);
+  std::vector<int> least;
+  for (int k = 0; k < 6; ++k) least.push_back(sets.LeastOf(k));
+  EXPECT_THAT(least, ElementsAre(0, 1, 2, 1, 2, 2));
+}
+
 }  // namespace
 }  // namespace rigel

@@ -212,16 +212,19 @@ TEST(FitInformation, TheScatterOfSharedPixelsIsThatOfScoresThatAreDrawn) {
   EXPECT_GT(Ratios(drawn, without)(1), 1.1);
 }
 
-// With unknown noise the scatter follows the noise of each camera pair, whatever the model says.
+// With unknown noise the scatter follows the noise of each camera pair, whatever the model says. Of
+// many matches a sample is taken.
 TEST(FitInformation, TheScatterIsMeasuredWhereTheNoiseIsUnknown) {
   Random random(4);
-  const FramePair pair = ExactPair(600, 3);
-  for (const double actual : {0.05, 0.15}) {
-    const Problem known(pair.rig, pair.matches, *pair.truth, 0.1);
-    Problem noisy(pair.rig, WithNoise(pair.matches, actual, &random), *pair.truth, 0.1);
-    noisy.fit.noise_is_given = false;
-    const double expected = actual * actual / 0.01;
-    ExpectRatiosWithin(0.25, noisy.Information().scatter, expected * known.Information().scatter);
+  for (const int num_matches : {600, 2400}) {
+    const FramePair pair = ExactPair(num_matches, 3);
+    for (const double actual : {0.05, 0.15}) {
+      const Problem known(pair.rig, pair.matches, *pair.truth, 0.1);
+      Problem noisy(pair.rig, WithNoise(pair.matches, actual, &random), *pair.truth, 0.1);
+      noisy.fit.noise_is_given = false;
+      const double expected = actual * actual / 0.01;
+      ExpectRatiosWithin(0.25, noisy.Information().scatter, expected * known.Information().scatter);
+    }
   }
 }
 

@@ -102,6 +102,17 @@ TEST(NoiseModel, EachCameraPairHasItsOwn) {
   }
 }
 
+// Of few errors a noise of their own would be chance, and so would the weights.
+TEST(NoiseModel, ACameraPairOfFewMatchesHasTheNoiseOfAll) {
+  for (int index = 0; index < 20; ++index) {
+    const Drawn drawn(12, std::vector<double>(4, 0.5), 0.0, index);
+    NoiseOptions options;
+    options.threshold_px = kThresholdPx;
+    const NoiseModel noise = drawn.Estimate(options);
+    for (const double sigma : noise.sigma_of) EXPECT_EQ(sigma, noise.sigma_of[0]);
+  }
+}
+
 // A threshold that is kept cuts a part of the errors off: at 1.5 sigma 13 percent of them.
 TEST(NoiseModel, IsCorrectedForTheErrorsThatAKeptThresholdCutsOff) {
   LogError all;

@@ -80,7 +80,9 @@ TEST(SharedPixels, PartnersInOneImageCompete) {
   // different images: they see one landmark.
   EXPECT_EQ(ResolveCompetition(matches, shared, {0.1, 0.2, 0.5, 9.0, 0.3}, &inliers), 1);
   EXPECT_THAT(inliers, ElementsAre(1, 0, 1, 1, 1));
+  EXPECT_THAT(LinkedSets(shared, 5), ElementsAre(0, 0, 0, 3, 0));
   const std::vector<SharedPixel> within = SharedWithin(shared, inliers);
+  EXPECT_THAT(LinkedSets(within, 5), ElementsAre(0, 1, 2, 3, 0));
   ASSERT_EQ(within.size(), 1u);
   EXPECT_EQ(within[0].first, 0);
   EXPECT_EQ(within[0].second, 4);
