@@ -1,6 +1,7 @@
 #include "rigel/tools/tool.h"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -94,11 +95,24 @@ void PrintHelp(const std::string& usage) {
             << (has_bounds ? ", 3 a bound that a flag set was missed.\n" : ".\n");
 }
 
+// Without this, glibc gives the memory of a pair of frames back to the system after each pair and
+// asks for it again: 17 page faults for each motion that is estimated (strace -c -e brk). 20 000
+// matches take 22 MB in all.
+void KeepFreedMemory() {
+#ifdef __GLIBC__
+  constexpr int kLargeBlock = 16 << 20;  // bytes: a larger one is still given back at once
+  constexpr int kKeptMemory = 32 << 20;  // bytes: more than 20 000 matches need
+  mallopt(M_MMAP_THRESHOLD, kLargeBlock);
+  mallopt(M_TRIM_THRESHOLD, kKeptMemory);
+#endif
+}
+
 }  // namespace
 
 std::string ProgramName() { return gflags::ProgramInvocationShortName(); }
 
 int RunProgram(int argc, char** argv, const std::string& usage, int (*run)()) {
+  KeepFreedMemory();
   // A write then fails, and that is told.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
