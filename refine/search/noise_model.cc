@@ -302,7 +302,7 @@ void MatchErrors::Set(const GroupedMatches& matches, const Pose& pose, double th
   const double limit = kBandEnd * kMaxGate * threshold_px;
   for (const MatchGroup& group : matches.groups()) {
     const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = matches.Fundamental(group, pose);
-    SelectInFront(matches.Pixels(group), matches.Directions(group), F.data(),
+    SelectInFront(matches.Rows(group), matches.Directions(group), F.data(),
                   matches.MotionOf(group, pose, threshold_px), limit * limit,
                   squared.data() + group.begin, in_front.data() + group.begin);
   }
