@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "rigel/core/epipolar.h"
+#include "rigel/core/median.h"
 #include "rigel/core/rig_centre.h"
 
 namespace rigel {
@@ -36,11 +37,21 @@ std::vector<int> GroupedOrder(int num_cameras, const std::vector<Match>& matches
   return order;
 }
 
+double MedianSigma(const MatchColumns& columns) {
+  std::vector<double> all = columns.sigma1;
+  all.insert(all.end(), columns.sigma2.begin(), columns.sigma2.end());
+  return MedianInPlace(&all);
+}
+
 }  // namespace
 
 GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches,
-                               const std::vector<std::array<double, 2>>& noise)
-    : rig_(rig), original_(GroupedOrder(rig.size(), matches)), general_(!noise.empty()) {
+                               const MatchColumns& columns)
+    : rig_(rig), original_(GroupedOrder(rig.size(), matches)) {
+  const std::vector<double>* sigmas[2] = {&columns.sigma1, &columns.sigma2};
+  general_ = !sigmas[0]->empty() || !sigmas[1]->empty();
+  const double typical = general_ ? MedianSigma(columns) : 1.0;
+
   for (const RigCamera& camera : rig.cameras) {
     unproject_.emplace_back(camera.Q * Unprojection(camera));
   }
@@ -56,6 +67,7 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
     }
     ++groups_.back().size;
     matches_.push_back(m);
+    if (!columns.landmark.empty()) landmarks_.push_back(columns.landmark[original_[k]]);
     const RowPoint points[2] = {RowPointOf(rig.cameras[m.camera1], m.pixel1),
                                 RowPointOf(rig.cameras[m.camera2], m.pixel2)};
     for (int side = 0; side < 2; ++side) {
@@ -66,7 +78,7 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
       if (!general_) continue;
       row += 4 * n;
       row[side * n] = point.p.z();
-      const double factor = noise.empty() ? 1.0 : noise[original_[k]][side];
+      const double factor = sigmas[side]->empty() ? 1.0 : (*sigmas[side])[original_[k]] / typical;
       for (int i = 0; i < 6; ++i) {
         row[(2 + 6 * side + i) * n] = factor * point.J(i / 2, i % 2);
       }
@@ -128,6 +140,9 @@ GroupedMatches GroupedMatches::Subset(const std::vector<size_t>& taken) const {
   std::iota(subset.original_.begin(), subset.original_.end(), 0);
   subset.matches_.reserve(count);
   for (const size_t k : taken) subset.matches_.push_back(matches_[k]);
+  if (!landmarks_.empty()) {
+    for (const size_t k : taken) subset.landmarks_.push_back(landmarks_[k]);
+  }
   subset.general_ = general_;
   const size_t num_arrays = general_ ? 4 + kGeneralArrays : 4;
   subset.rows_.resize(num_arrays * count + kKernelPadding);

@@ -3,12 +3,13 @@
 #ifndef RIGEL_CORE_GROUPED_MATCHES_H_
 #define RIGEL_CORE_GROUPED_MATCHES_H_
 
-#include <array>
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "rigel/core/match.h"
+#include "rigel/core/match_columns.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/rays.h"
 #include "rigel/core/rig.h"
@@ -30,10 +31,10 @@ class GroupedMatches {
  public:
   GroupedMatches() = default;
   // `matches` must name cameras of `rig` only and have finite pixels. Copies what it needs.
-  // `noise` is empty, or has the noise of the two pixels of each match as a multiple of that of the
-  // others, > 0: the Sampson errors are then relative to it.
+  // Of `columns`, sigma1, sigma2 and landmark are used: with sigmas all errors are those that a
+  // pixel of the median sigma would have.
   GroupedMatches(const Rig& rig, const std::vector<Match>& matches,
-                 const std::vector<std::array<double, 2>>& noise = {});
+                 const MatchColumns& columns = {});
 
   // The same matches with the origin of the rig's body frame moved (rig_centre.h).
   GroupedMatches WithOrigin(const Eigen::Vector3d& origin) const;
@@ -44,6 +45,8 @@ class GroupedMatches {
 
   // In grouped order; within a group in the order of the input.
   const std::vector<Match>& matches() const { return matches_; }
+  // Empty if they are not known.
+  const std::vector<int64_t>& landmarks() const { return landmarks_; }
 
   // At most `count` of the matches, evenly spaced in their order. original() is then the position
   // in the subset.
@@ -110,6 +113,7 @@ class GroupedMatches {
   Rig rig_;
   std::vector<MatchGroup> groups_;
   std::vector<Match> matches_;
+  std::vector<int64_t> landmarks_;
   std::vector<int> original_;
   std::vector<Eigen::Matrix3d> unproject_;  // of each camera
   // x1 of all, then y1, x2, y2, and what RowArrays::general says, if that is needed; the six

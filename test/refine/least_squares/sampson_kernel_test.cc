@@ -2,7 +2,6 @@
 // another.
 #include "rigel/refine/least_squares/sampson_kernel.h"
 
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <iterator>
@@ -40,12 +39,12 @@ Problem MakeProblem(int index, int num_matches) {
   FramePair pair = ScenePair(options, index);
   Random random = Random::Stream(11, index);
   const Pose pose = StartNear(*pair.truth, 0.1, 0.05, &random);
-  std::vector<std::array<double, 2>> noise(index % 2 == 0 ? 0 : pair.matches.size());
-  for (auto& [noise1, noise2] : noise) {
-    noise1 = random.Uniform(0.5, 2.0);
-    noise2 = random.Uniform(0.5, 2.0);
+  MatchColumns columns;
+  for (std::vector<double>* sigma : {&columns.sigma1, &columns.sigma2}) {
+    sigma->resize(index % 2 == 0 ? 0 : pair.matches.size());
+    for (double& s : *sigma) s = random.Uniform(0.5, 2.0);
   }
-  GroupedMatches matches(pair.rig, pair.matches, noise);
+  GroupedMatches matches(pair.rig, pair.matches, columns);
   std::vector<double> weights(matches.size());
   for (double& w : weights) w = random.Uniform() < 0.2 ? 0.0 : random.Uniform();
   return {std::move(pair), std::move(matches), pose, std::move(weights)};

@@ -46,9 +46,9 @@ TEST(PackedMatches, HoldTheMatchesOfWeightAboveZeroGroupByGroup) {
   scene.num_matches = 50;
   const FramePair pair = ScenePair(scene, 0);
   // With another noise for each pixel, so that the rows are of the general form.
-  std::vector<std::array<double, 2>> noise(pair.matches.size());
-  for (size_t k = 0; k < noise.size(); ++k) noise[k] = {1.0 + 0.01 * k, 2.0 + 0.01 * k};
-  const GroupedMatches matches(pair.rig, pair.matches, noise);
+  MatchColumns columns;
+  for (size_t k = 0; k < pair.matches.size(); ++k) columns.sigma1.push_back(1.0 + 0.01 * k);
+  const GroupedMatches matches(pair.rig, pair.matches, columns);
   std::vector<double> weights(matches.size());
   for (size_t k = 0; k < weights.size(); ++k) weights[k] = 0.5 * (k % 3);
   PackedMatches packed;
