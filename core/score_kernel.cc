@@ -52,20 +52,12 @@ RIGEL_KERNEL_BODY void TruncatedErrors(const RowArrays& block, const double F[9]
 }
 
 template <bool kGeneral>
-RIGEL_KERNEL_BODY void ErrorsOf(const RowArrays& block, const double F[9], double e[kBlock]) {
+RIGEL_KERNEL_BODY void Errors(const RowArrays& block, const double F[9], double e[kBlock]) {
   for (int i = 0; i < Rounded(block.size); ++i) {
     double C2, g2;
     NumeratorAndGradient<kGeneral>(block, i, F, &C2, &g2);
     const double r2 = C2 / g2;
     e[i] = g2 > 0 ? r2 : std::numeric_limits<double>::infinity();
-  }
-}
-
-RIGEL_KERNEL_BODY void Errors(const RowArrays& block, const double F[9], double e[kBlock]) {
-  if (block.general != nullptr) {
-    ErrorsOf<true>(block, F, e);
-  } else {
-    ErrorsOf<false>(block, F, e);
   }
 }
 
@@ -92,6 +84,7 @@ RIGEL_KERNEL_BODY void RejectBehind(const RayArrays& rays, int begin, int size,
 }
 
 // `rays` and `motion` are null where depths are not looked at.
+template <bool kGeneral>
 RIGEL_KERNEL_BODY double Sum(const RowArrays& rows, const RayArrays* rays, const double F[9],
                              const GroupMotion* motion, double t2, double bound, double sum,
                              int* num_inliers) {
@@ -99,11 +92,7 @@ RIGEL_KERNEL_BODY double Sum(const RowArrays& rows, const RayArrays* rays, const
   for (int begin = 0; begin < rows.size && !(sum > bound); begin += kBlock) {
     const RowArrays block = BlockAt(rows, begin);
     double e[kBlock];
-    if (block.general != nullptr) {
-      TruncatedErrors<true>(block, F, t2, e);
-    } else {
-      TruncatedErrors<false>(block, F, t2, e);
-    }
+    TruncatedErrors<kGeneral>(block, F, t2, e);
     if (rays != nullptr) RejectBehind(*rays, begin, block.size, *motion, t2, e);
     // What is not there counts as an outlier, and then adds nothing.
     for (int i = block.size; i < kBlock; ++i) e[i] = t2;
@@ -122,15 +111,17 @@ RIGEL_KERNEL_BODY double Sum(const RowArrays& rows, const RayArrays* rays, const
   return sum;
 }
 
+template <bool kGeneral>
 RIGEL_KERNEL_BODY void AllErrors(const RowArrays& rows, const double F[9], double* squared_errors) {
   for (int begin = 0; begin < rows.size; begin += kBlock) {
     const RowArrays block = BlockAt(rows, begin);
     double e[kBlock];
-    Errors(block, F, e);
+    Errors<kGeneral>(block, F, e);
     for (int i = 0; i < block.size; ++i) squared_errors[begin + i] = e[i];
   }
 }
 
+template <bool kGeneral>
 RIGEL_KERNEL_BODY int Select(const RowArrays& rows, const RayArrays& rays, const double F[9],
                              const GroupMotion& motion, double t2, double* squared_errors,
                              char* inliers) {
@@ -138,7 +129,7 @@ RIGEL_KERNEL_BODY int Select(const RowArrays& rows, const RayArrays& rays, const
   for (int begin = 0; begin < rows.size; begin += kBlock) {
     const RowArrays block = BlockAt(rows, begin);
     double e[kBlock];
-    Errors(block, F, e);
+    Errors<kGeneral>(block, F, e);
     for (int i = 0; i < block.size; ++i) squared_errors[begin + i] = e[i];
     RejectBehind(rays, begin, block.size, motion, t2, e);
     int count = 0;
@@ -158,13 +149,14 @@ RIGEL_KERNEL_BODY void AllParallax(const RayArrays& rays, const double R[9], int
   for (int k = 0; k < size; ++k) sin2[k] = TermsOfMatch(rays, k, R, no_baseline).sin2;
 }
 
+template <bool kGeneral>
 RIGEL_KERNEL_BODY void Count(const RowArrays& rows, const RayArrays& rays, const double F[9],
                              const GroupMotion& motion, double t2, DepthCounts* counts) {
   int in_front = 0, behind = 0, decided = 0;
   for (int begin = 0; begin < rows.size; begin += kBlock) {
     const RowArrays block = BlockAt(rows, begin);
     double e[kBlock], sign1[kBlock], sign2[kBlock];
-    Errors(block, F, e);
+    Errors<kGeneral>(block, F, e);
     for (int i = 0; i < Rounded(block.size); ++i) {
       const DepthTerms depth = TermsOfMatch(rays, begin + i, motion.R, motion.b);
       sign1[i] = depth.n1;
@@ -194,29 +186,42 @@ RIGEL_TARGET_AVX2 void AllParallaxAvx2(const RayArrays& rays, const double R[9],
 
 RIGEL_TARGET_AVX2 void CountAvx2(const RowArrays& rows, const RayArrays& rays, const double F[9],
                                  const GroupMotion& motion, double t2, DepthCounts* counts) {
-  Count(rows, rays, F, motion, t2, counts);
+  if (rows.general != nullptr) {
+    Count<true>(rows, rays, F, motion, t2, counts);
+  } else {
+    Count<false>(rows, rays, F, motion, t2, counts);
+  }
 }
 
 RIGEL_TARGET_AVX2 double SumAvx2(const RowArrays& rows, const double F[9], double t2, double bound,
                                  double sum, int* num_inliers) {
-  return Sum(rows, nullptr, F, nullptr, t2, bound, sum, num_inliers);
+  return rows.general != nullptr
+             ? Sum<true>(rows, nullptr, F, nullptr, t2, bound, sum, num_inliers)
+             : Sum<false>(rows, nullptr, F, nullptr, t2, bound, sum, num_inliers);
 }
 
 RIGEL_TARGET_AVX2 double SumInFrontAvx2(const RowArrays& rows, const RayArrays& rays,
                                         const double F[9], const GroupMotion& motion, double t2,
                                         double bound, double sum, int* num_inliers) {
-  return Sum(rows, &rays, F, &motion, t2, bound, sum, num_inliers);
+  return rows.general != nullptr ? Sum<true>(rows, &rays, F, &motion, t2, bound, sum, num_inliers)
+                                 : Sum<false>(rows, &rays, F, &motion, t2, bound, sum, num_inliers);
 }
 
 RIGEL_TARGET_AVX2 void AllErrorsAvx2(const RowArrays& rows, const double F[9],
                                      double* squared_errors) {
-  AllErrors(rows, F, squared_errors);
+  if (rows.general != nullptr) {
+    AllErrors<true>(rows, F, squared_errors);
+  } else {
+    AllErrors<false>(rows, F, squared_errors);
+  }
 }
 
 RIGEL_TARGET_AVX2 int SelectAvx2(const RowArrays& rows, const RayArrays& rays, const double F[9],
                                  const GroupMotion& motion, double t2, double* squared_errors,
                                  char* inliers) {
-  return Select(rows, rays, F, motion, t2, squared_errors, inliers);
+  return rows.general != nullptr
+             ? Select<true>(rows, rays, F, motion, t2, squared_errors, inliers)
+             : Select<false>(rows, rays, F, motion, t2, squared_errors, inliers);
 }
 #endif
 
@@ -227,7 +232,9 @@ double TruncatedSampsonSum(const RowArrays& rows, const double F[9], double t2, 
 #if RIGEL_HAS_AVX2_PATH
   if (path == CpuPath::kAvx2) return SumAvx2(rows, F, t2, bound, sum, num_inliers);
 #endif
-  return Sum(rows, nullptr, F, nullptr, t2, bound, sum, num_inliers);
+  return rows.general != nullptr
+             ? Sum<true>(rows, nullptr, F, nullptr, t2, bound, sum, num_inliers)
+             : Sum<false>(rows, nullptr, F, nullptr, t2, bound, sum, num_inliers);
 }
 
 double TruncatedSampsonSumInFront(const RowArrays& rows, const RayArrays& rays, const double F[9],
@@ -238,7 +245,8 @@ double TruncatedSampsonSumInFront(const RowArrays& rows, const RayArrays& rays, 
     return SumInFrontAvx2(rows, rays, F, motion, t2, bound, sum, num_inliers);
   }
 #endif
-  return Sum(rows, &rays, F, &motion, t2, bound, sum, num_inliers);
+  return rows.general != nullptr ? Sum<true>(rows, &rays, F, &motion, t2, bound, sum, num_inliers)
+                                 : Sum<false>(rows, &rays, F, &motion, t2, bound, sum, num_inliers);
 }
 
 void SquaredSampsonErrors(const RowArrays& rows, const double F[9], double* squared_errors,
@@ -246,7 +254,11 @@ void SquaredSampsonErrors(const RowArrays& rows, const double F[9], double* squa
 #if RIGEL_HAS_AVX2_PATH
   if (path == CpuPath::kAvx2) return AllErrorsAvx2(rows, F, squared_errors);
 #endif
-  AllErrors(rows, F, squared_errors);
+  if (rows.general != nullptr) {
+    AllErrors<true>(rows, F, squared_errors);
+  } else {
+    AllErrors<false>(rows, F, squared_errors);
+  }
 }
 
 int SelectInFront(const RowArrays& rows, const RayArrays& rays, const double F[9],
@@ -257,7 +269,9 @@ int SelectInFront(const RowArrays& rows, const RayArrays& rays, const double F[9
     return SelectAvx2(rows, rays, F, motion, t2, squared_errors, inliers);
   }
 #endif
-  return Select(rows, rays, F, motion, t2, squared_errors, inliers);
+  return rows.general != nullptr
+             ? Select<true>(rows, rays, F, motion, t2, squared_errors, inliers)
+             : Select<false>(rows, rays, F, motion, t2, squared_errors, inliers);
 }
 
 void SquaredParallax(const RayArrays& rays, const double R[9], int size, double* sin2,
@@ -274,7 +288,11 @@ void CountDepths(const RowArrays& rows, const RayArrays& rays, const double F[9]
 #if RIGEL_HAS_AVX2_PATH
   if (path == CpuPath::kAvx2) return CountAvx2(rows, rays, F, motion, t2, counts);
 #endif
-  Count(rows, rays, F, motion, t2, counts);
+  if (rows.general != nullptr) {
+    Count<true>(rows, rays, F, motion, t2, counts);
+  } else {
+    Count<false>(rows, rays, F, motion, t2, counts);
+  }
 }
 
 }  // namespace rigel
