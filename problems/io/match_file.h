@@ -2,6 +2,8 @@
 //
 //   format rigmatch 1
 //   camera K pinhole FX FY CX CY WIDTH HEIGHT QW QX QY QZ SX SY SZ
+//   camera_sigma K ROT_DEG POS_M [FOCAL_FRACTION]
+//   camera_time K DT
 //   time T1 T2
 //   truth QW QX QY QZ TX TY TZ
 //   gravity1 GX GY GZ
