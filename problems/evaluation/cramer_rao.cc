@@ -60,13 +60,9 @@ std::vector<SampsonRow> RowsOf(const Rig& rig, const std::vector<Match>& matches
     const MatchGroup& group = grouped.groups()[g];
     for (int i = group.begin; i < group.begin + group.size; ++i) {
       const int k = grouped.original(i);
-      const Match& m = matches[k];
       if (!(*mask)[k]) continue;
       (*mask)[k] =
-          DifferentiateSampson(linear[g], CentredPixel(rig.cameras[m.camera1].intrinsics, m.pixel1),
-                               CentredPixel(rig.cameras[m.camera2].intrinsics, m.pixel2), &rows[k])
-              ? 1
-              : 0;
+          DifferentiateSampson(linear[g], grouped.Point1(i), grouped.Point2(i), &rows[k]) ? 1 : 0;
     }
   }
   return rows;

@@ -59,7 +59,7 @@ class Problem {
     rays_[k] = rays;
   }
 
-  PixelArrays pixels() const {
+  RowArrays pixels() const {
     return {data_[0].data(), data_[1].data(), data_[2].data(), data_[3].data(), size_};
   }
   RayArrays rays() const {
@@ -283,7 +283,7 @@ std::vector<bool> LeftOut(const Problem& p, double min_sin2, CpuPath path) {
   fits.F(2, 0) = 1.0;  // x1 = 0
   const int size = p.pixels().size;
   std::vector<double> zeros(size + kKernelPadding, 0.0), errors(size);
-  const PixelArrays pixels = {zeros.data(), zeros.data(), zeros.data(), zeros.data(), size};
+  const RowArrays pixels = {zeros.data(), zeros.data(), zeros.data(), zeros.data(), size};
   std::vector<char> inliers(size);
   SelectInFront(pixels, p.rays(), fits.F.data(), p.motion(min_sin2), kT2, errors.data(),
                 inliers.data(), path);
