@@ -10,7 +10,6 @@
 #include "rigel/core/angles.h"
 #include "rigel/problems/io/gzip.h"
 #include "rigel/problems/io/input_file.h"
-#include "rigel/problems/io/match_file_list.h"
 #include "rigel/problems/io/match_file_words.h"
 #include "rigel/problems/io/match_lines.h"
 #include "rigel/problems/io/match_rows.h"
@@ -470,27 +469,6 @@ bool IsMatchFileName(const std::string& name) {
   std::string_view plain = name;
   if (EndsWith(plain, kCompressed)) plain.remove_suffix(kCompressed.size());
   return plain.size() > kSuffix.size() && EndsWith(plain, kSuffix);
-}
-
-std::vector<std::string> ListMatchFiles(const std::string& comma_separated,
-                                        std::vector<std::string>* errors,
-                                        std::vector<std::string>* notes) {
-  MatchFileList list;
-  for (size_t begin = 0; begin <= comma_separated.size();) {
-    const size_t comma = std::min(comma_separated.find(',', begin), comma_separated.size());
-    const std::string item = comma_separated.substr(begin, comma - begin);
-    begin = comma + 1;
-    if (!item.empty()) list.Add(item);
-  }
-  errors->insert(errors->end(), list.errors.begin(), list.errors.end());
-  if (notes != nullptr && !list.by_number.empty()) {
-    const size_t more = list.by_number.size() - 1;
-    notes->push_back(Printable(list.by_number.front()) +
-                     (more > 0 ? " and " + std::to_string(more) + " more directories" : "") +
-                     ": files are taken in the order of the numbers in their names, which is not "
-                     "the byte order of the names");
-  }
-  return std::move(list.paths);
 }
 
 }  // namespace rigel
