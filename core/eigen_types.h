@@ -17,6 +17,7 @@ template <int kRows, int kColumns = 1>
 using UnalignedMatrix = Eigen::Matrix<double, kRows, kColumns, Eigen::DontAlign>;
 
 using Pixel = UnalignedMatrix<2>;  // (u, v)
+using Matrix2x3d = UnalignedMatrix<2, 3>;
 using Matrix3x2d = UnalignedMatrix<3, 2>;
 using Vector6d = UnalignedMatrix<6>;
 using Matrix6d = UnalignedMatrix<6, 6>;
