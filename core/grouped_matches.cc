@@ -205,26 +205,26 @@ GroupMotion GroupedMatches::MotionOf(const MatchGroup& group, const Pose& pose,
                                      double threshold_px) const {
   GroupMotion motion;
   Eigen::Map<RowMajor3d>(motion.R) = pose.R;
+  // Of depths only signs are wanted: that cameras fire at other times hardly changes them.
   Eigen::Map<Eigen::Vector3d>(motion.b) =
-      Baseline(pose, PositionOf(group.camera1, pose), PositionOf(group.camera2, pose));
+      Baseline(pose, rig_.cameras[group.camera1].s, rig_.cameras[group.camera2].s);
   const double min_sin_parallax = DecidedParallax(group, threshold_px);
   motion.min_sin2 = min_sin_parallax * min_sin_parallax;
   return motion;
 }
 
-Eigen::Matrix3d GroupedMatches::OrientationOf(int camera, const Pose& pose) const {
-  const Eigen::Matrix3d& Q = rig_.cameras[camera].Q;
-  return later_.empty() ? Q : Eigen::Matrix3d(PartOfMotion(pose, -later_[camera]).R * Q);
-}
-
-Eigen::Vector3d GroupedMatches::PositionOf(int camera, const Pose& pose) const {
-  const Eigen::Vector3d& s = rig_.cameras[camera].s;
-  return later_.empty() ? s : PartOfMotion(pose, -later_[camera]) * s;
-}
-
-Eigen::Matrix3d GroupedMatches::UnprojectionOf(int camera, const Pose& pose) const {
-  const Eigen::Matrix3d& QU = unproject_[camera];
-  return later_.empty() ? QU : Eigen::Matrix3d(PartOfMotion(pose, -later_[camera]).R * QU);
+GroupedMatches::Places GroupedMatches::PlacesOf(const MatchGroup& group, const Pose& pose,
+                                                bool of_rays) const {
+  const RigCamera& c1 = rig_.cameras[group.camera1];
+  const RigCamera& c2 = rig_.cameras[group.camera2];
+  Places places = {of_rays ? c1.Q : unproject_[group.camera1],
+                   of_rays ? c2.Q : unproject_[group.camera2], c1.s, c2.s};
+  if (!HasTimes()) return places;
+  const Vector6d screw = ScrewOf(pose);
+  const Pose part1 = PartOfScrew(screw, -later_[group.camera1]);
+  const Pose part2 =
+      group.camera1 == group.camera2 ? part1 : PartOfScrew(screw, -later_[group.camera2]);
+  return {part1.R * places.A1, part2.R * places.A2, part1 * c1.s, part2 * c2.s};
 }
 
 Matrix6d GroupedMatches::PlaceByMotion(int camera, const Pose& pose) const {
@@ -239,10 +239,8 @@ Matrix6d GroupedMatches::PlaceByMotion(int camera, const Pose& pose) const {
 
 Eigen::Matrix3d GroupedMatches::Fundamental(const MatchGroup& group, const Pose& pose) const {
   if (HasTimes()) {
-    const Eigen::Vector3d b =
-        Baseline(pose, PositionOf(group.camera1, pose), PositionOf(group.camera2, pose));
-    return UnprojectionOf(group.camera2, pose).transpose() * Skew(b) * pose.R *
-           UnprojectionOf(group.camera1, pose);
+    const Places at = PlacesOf(group, pose, false);
+    return at.A2.transpose() * Skew(Baseline(pose, at.s1, at.s2)) * pose.R * at.A1;
   }
   // The same, as RANSAC calls it for each hypothesis.
   const Eigen::Vector3d b =

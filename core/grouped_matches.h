@@ -58,13 +58,15 @@ class GroupedMatches {
   // kind only. The draw is the same in each call.
   GroupedMatches DrawnSubset(size_t count) const;
 
-  // Where a camera is if the rig moves by `pose`: Q and s as they are in the rig, except if it
-  // fires a share a of the interval later. The rig moves with constant velocity, so both views are
-  // then those of a camera at PartOfMotion(pose, -a) (Q, s).
-  Eigen::Matrix3d OrientationOf(int camera, const Pose& pose) const;
-  Eigen::Vector3d PositionOf(int camera, const Pose& pose) const;
-  // Q U: the points of rows (row_point.h) to directions in the body frame.
-  Eigen::Matrix3d UnprojectionOf(int camera, const Pose& pose) const;
+  // Where the cameras of a group are if the rig moves by `pose`: A = Q U, which takes the points of
+  // rows (row_point.h) to directions in the body frame, or with `of_rays` Q alone; and s. These are
+  // those of the rig, except if a camera fires a share a of the interval later. The rig moves with
+  // constant velocity, so both views are then those of a camera at PartOfMotion(pose, -a) (Q, s).
+  struct Places {
+    Eigen::Matrix3d A1, A2;
+    Eigen::Vector3d s1, s2;
+  };
+  Places PlacesOf(const MatchGroup& group, const Pose& pose, bool of_rays) const;
   // True if a camera fires at another time. How its place changes with the motion: (d, e) of
   // Q <- Exp(d) Q, s <- s + e by those of the motion.
   bool HasTimes() const { return !later_.empty(); }

@@ -124,14 +124,6 @@ Matrix6d LeftJacobianOfScrew(const Vector6d& screw) {
   return sum;
 }
 
-// The screw whose Exp is the motion.
-Vector6d ScrewOf(const Pose& motion) {
-  Vector6d screw;
-  screw.head<3>() = LogSO3(motion.R);
-  screw.tail<3>() = LeftJacobianSO3(screw.head<3>()).inverse() * motion.t;
-  return screw;
-}
-
 // (d, e) of a pose from the perturbation Exp(d, v) on its left: e = v + d x t.
 Matrix6d FromLeftPerturbation(const Pose& pose) {
   Matrix6d jacobian = Matrix6d::Identity();
@@ -141,10 +133,21 @@ Matrix6d FromLeftPerturbation(const Pose& pose) {
 
 }  // namespace
 
-Pose PartOfMotion(const Pose& motion, double share) {
+Vector6d ScrewOf(const Pose& motion) {
+  Vector6d screw;
+  screw.head<3>() = LogSO3(motion.R);
+  screw.tail<3>() = LeftJacobianSO3(screw.head<3>()).inverse() * motion.t;
+  return screw;
+}
+
+Pose PartOfScrew(const Vector6d& screw, double share) {
   if (share == 0) return Pose();
-  const Vector6d screw = share * ScrewOf(motion);
-  return {ExpSO3(screw.head<3>()), LeftJacobianSO3(screw.head<3>()) * screw.tail<3>()};
+  const Eigen::Vector3d turn = share * screw.head<3>();
+  return {ExpSO3(turn), LeftJacobianSO3(turn) * (share * screw.tail<3>())};
+}
+
+Pose PartOfMotion(const Pose& motion, double share) {
+  return share == 0 ? Pose() : PartOfScrew(ScrewOf(motion), share);
 }
 
 Matrix6d PartOfMotionJacobian(const Pose& motion, double share) {

@@ -57,6 +57,10 @@ Eigen::Matrix3d LeftJacobianSO3(const Eigen::Vector3d& omega);
 // negative. Parts of one motion commute.
 Pose PartOfMotion(const Pose& motion, double share);
 
+// The same in two steps, for several parts of one motion: the screw, rotation vector first.
+Vector6d ScrewOf(const Pose& motion);
+Pose PartOfScrew(const Vector6d& screw, double share);
+
 // The perturbation (d, e) of that part by the perturbation of the motion, for R <- Exp(d) R,
 // t <- t + e of both.
 Matrix6d PartOfMotionJacobian(const Pose& motion, double share);

@@ -9,13 +9,8 @@ namespace {
 
 // F_ij = l.(b x r), l column i of A_2 and r column j of R A_1.
 struct Factors {
-  Factors(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose, bool of_rays)
-      : s1(matches.PositionOf(group.camera1, pose)),
-        b(Baseline(pose, s1, matches.PositionOf(group.camera2, pose))),
-        left(of_rays ? matches.OrientationOf(group.camera2, pose)
-                     : matches.UnprojectionOf(group.camera2, pose)),
-        right(pose.R * (of_rays ? matches.OrientationOf(group.camera1, pose)
-                                : matches.UnprojectionOf(group.camera1, pose))) {}
+  Factors(const GroupedMatches::Places& at, const Pose& pose)
+      : s1(at.s1), b(Baseline(pose, at.s1, at.s2)), left(at.A2), right(pose.R * at.A1) {}
   Eigen::Vector3d s1, b;
   Eigen::Matrix3d left, right;
 };
@@ -40,13 +35,13 @@ Eigen::Matrix<double, 9, 12> ByPlaces(const Factors& f, const Eigen::Matrix3d& R
 
 RowMajor3d FundamentalOf(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
                          bool of_rays) {
-  const Factors f(matches, group, pose, of_rays);
+  const Factors f(matches.PlacesOf(group, pose, of_rays), pose);
   return f.left.transpose() * Skew(f.b) * f.right;
 }
 
 ByMotionMatrix FundamentalByMotion(const GroupedMatches& matches, const MatchGroup& group,
                                    const Pose& pose, bool of_rays) {
-  const Factors f(matches, group, pose, of_rays);
+  const Factors f(matches.PlacesOf(group, pose, of_rays), pose);
   const Eigen::Vector3d Rs = pose.R * f.s1;
   ByMotionMatrix D;
   for (int i = 0; i < 3; ++i) {
@@ -69,7 +64,7 @@ ByMotionMatrix FundamentalByMotion(const GroupedMatches& matches, const MatchGro
 
 ByCalibrationMatrix FundamentalByCalibration(const GroupedMatches& matches, const MatchGroup& group,
                                              const Pose& pose) {
-  const Factors f(matches, group, pose, false);
+  const Factors f(matches.PlacesOf(group, pose, false), pose);
   const Eigen::Matrix<double, 9, 12> by_places = ByPlaces(f, pose.R);
   ByCalibrationMatrix D = ByCalibrationMatrix::Zero();
   D.leftCols<6>() = by_places.leftCols<6>();
