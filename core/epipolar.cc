@@ -72,13 +72,21 @@ double SampsonError(const Eigen::Matrix3d& F, const Eigen::Vector3d& p_i,
   return F.isZero(0) || terms.C != 0 ? std::numeric_limits<double>::infinity() : 0.0;
 }
 
+double SampsonError(const Eigen::Matrix3d& F, const RowPoint& i, const RowPoint& j) {
+  const Eigen::Vector3d Fp = F * i.p;
+  const double gradient2 = (j.J.transpose() * Fp).squaredNorm() +
+                           (i.J.transpose() * (F.transpose() * j.p)).squaredNorm();
+  const double C = j.p.dot(Fp);
+  if (gradient2 > 0) return C / std::sqrt(gradient2);
+  return F.isZero(0) || C != 0 ? std::numeric_limits<double>::infinity() : 0.0;
+}
+
 double SampsonError(const Pose& pose, const Rig& rig, const Match& match) {
   const RigCamera& camera_i = rig.cameras[match.camera1];
   const RigCamera& camera_j = rig.cameras[match.camera2];
-  const Eigen::Matrix3d F = CentredFundamental(EssentialMatrix(pose, camera_i, camera_j),
-                                               camera_i.intrinsics, camera_j.intrinsics);
-  return SampsonError(F, CentredPixel(camera_i.intrinsics, match.pixel1),
-                      CentredPixel(camera_j.intrinsics, match.pixel2));
+  const Eigen::Matrix3d F = Unprojection(camera_j).transpose() *
+                            EssentialMatrix(pose, camera_i, camera_j) * Unprojection(camera_i);
+  return SampsonError(F, RowPointOf(camera_i, match.pixel1), RowPointOf(camera_j, match.pixel2));
 }
 
 }  // namespace rigel

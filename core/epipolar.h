@@ -14,6 +14,7 @@
 #include "rigel/core/pose.h"
 #include "rigel/core/rays.h"
 #include "rigel/core/rig.h"
+#include "rigel/core/row_point.h"
 
 namespace rigel {
 
@@ -65,6 +66,9 @@ Eigen::Vector3d CentredPixel(const PinholeCamera& camera, const Pixel& pixel);
 //   baseline must not count all matches of this pair as inliers.
 double SampsonError(const Eigen::Matrix3d& F, const Eigen::Vector3d& p_i,
                     const Eigen::Vector3d& p_j);
+
+// The same for any cameras: F = U_j' E U_i (row_point.h), r = C / |(J_i'F'p_j, J_j'F p_i)|.
+double SampsonError(const Eigen::Matrix3d& F, const RowPoint& i, const RowPoint& j);
 
 // Sampson error of one match under `pose`, pixels. The match's cameras must be in the rig.
 double SampsonError(const Pose& pose, const Rig& rig, const Match& match);

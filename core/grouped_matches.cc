@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "rigel/core/epipolar.h"
+#include "rigel/core/median.h"
 #include "rigel/core/rig_centre.h"
 
 namespace rigel {
@@ -36,17 +37,27 @@ std::vector<int> GroupedOrder(int num_cameras, const std::vector<Match>& matches
   return order;
 }
 
+double MedianSigma(const MatchColumns& columns) {
+  std::vector<double> all = columns.sigma1;
+  all.insert(all.end(), columns.sigma2.begin(), columns.sigma2.end());
+  return MedianInPlace(&all);
+}
+
 }  // namespace
 
-GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches)
+GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches,
+                               const MatchColumns& columns)
     : rig_(rig), original_(GroupedOrder(rig.size(), matches)) {
+  const std::vector<double>* sigmas[2] = {&columns.sigma1, &columns.sigma2};
+  general_ = !sigmas[0]->empty() || !sigmas[1]->empty();
+  const double typical = general_ ? MedianSigma(columns) : 1.0;
+
   for (const RigCamera& camera : rig.cameras) {
-    const PinholeCamera& c = camera.intrinsics;
-    unproject_.emplace_back(camera.Q * Eigen::Vector3d(1.0 / c.fx, 1.0 / c.fy, 1.0).asDiagonal());
+    unproject_.emplace_back(camera.Q * Unprojection(camera));
   }
   const size_t n = matches.size();
   matches_.reserve(n);
-  pixels_.resize(4 * n + kKernelPadding);
+  rows_.resize((general_ ? 4 + kGeneralArrays : 4) * n + kKernelPadding);
   directions_.resize(6 * n + kKernelPadding);
   for (size_t k = 0; k < n; ++k) {
     const Match& m = matches[original_[k]];
@@ -56,12 +67,22 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
     }
     ++groups_.back().size;
     matches_.push_back(m);
-    const PinholeCamera& c1 = rig.cameras[m.camera1].intrinsics;
-    const PinholeCamera& c2 = rig.cameras[m.camera2].intrinsics;
-    pixels_[k] = m.pixel1.x() - c1.cx;
-    pixels_[n + k] = m.pixel1.y() - c1.cy;
-    pixels_[2 * n + k] = m.pixel2.x() - c2.cx;
-    pixels_[3 * n + k] = m.pixel2.y() - c2.cy;
+    if (!columns.landmark.empty()) landmarks_.push_back(columns.landmark[original_[k]]);
+    const RowPoint points[2] = {RowPointOf(rig.cameras[m.camera1], m.pixel1),
+                                RowPointOf(rig.cameras[m.camera2], m.pixel2)};
+    for (int side = 0; side < 2; ++side) {
+      const RowPoint& point = points[side];
+      double* row = rows_.data() + k;
+      row[2 * side * n] = point.p.x();
+      row[(2 * side + 1) * n] = point.p.y();
+      if (!general_) continue;
+      row += 4 * n;
+      row[side * n] = point.p.z();
+      const double factor = sigmas[side]->empty() ? 1.0 : (*sigmas[side])[original_[k]] / typical;
+      for (int i = 0; i < 6; ++i) {
+        row[(2 + 6 * side + i) * n] = factor * point.J(i / 2, i % 2);
+      }
+    }
     const RayPair rays = MakeRayPair(rig, m);
     for (int i = 0; i < 3; ++i) {
       directions_[i * n + k] = rays.ray1.x[i];
@@ -119,12 +140,19 @@ GroupedMatches GroupedMatches::Subset(const std::vector<size_t>& taken) const {
   std::iota(subset.original_.begin(), subset.original_.end(), 0);
   subset.matches_.reserve(count);
   for (const size_t k : taken) subset.matches_.push_back(matches_[k]);
-  subset.pixels_.resize(4 * count + kKernelPadding);
+  if (!landmarks_.empty()) {
+    for (const size_t k : taken) subset.landmarks_.push_back(landmarks_[k]);
+  }
+  subset.general_ = general_;
+  const size_t num_arrays = general_ ? 4 + kGeneralArrays : 4;
+  subset.rows_.resize(num_arrays * count + kKernelPadding);
   subset.directions_.resize(6 * count + kKernelPadding);
   const auto take = [&](const double* coordinate, double* result) {
     for (size_t i = 0; i < count; ++i) result[i] = coordinate[taken[i]];
   };
-  for (int c = 0; c < 4; ++c) take(pixels_.data() + c * n, subset.pixels_.data() + c * count);
+  for (size_t c = 0; c < num_arrays; ++c) {
+    take(rows_.data() + c * n, subset.rows_.data() + c * count);
+  }
   for (int c = 0; c < 6; ++c) {
     take(directions_.data() + c * n, subset.directions_.data() + c * count);
   }
@@ -147,10 +175,23 @@ RayPair GroupedMatches::rays(int k) const {
           {{x[3 * n], x[4 * n], x[5 * n]}, rig_.cameras[matches_[k].camera2].s}};
 }
 
-PixelArrays GroupedMatches::Pixels(const MatchGroup& group) const {
-  const double* x1 = pixels_.data() + group.begin;
+RowArrays GroupedMatches::Rows(const MatchGroup& group) const {
+  const double* x1 = rows_.data() + group.begin;
   const size_t n = matches_.size();
-  return {x1, x1 + n, x1 + 2 * n, x1 + 3 * n, group.size};
+  return {x1, x1 + n, x1 + 2 * n, x1 + 3 * n, group.size, general_ ? x1 + 4 * n : nullptr, n};
+}
+
+RowPoint GroupedMatches::PointAt(int k, int side) const {
+  const double* row = rows_.data() + k;
+  const size_t n = matches_.size();
+  RowPoint point;
+  point.p = {row[2 * side * n], row[(2 * side + 1) * n], 1.0};
+  point.J.setIdentity();
+  if (!general_) return point;
+  row += 4 * n;
+  point.p.z() = row[side * n];
+  for (int i = 0; i < 6; ++i) point.J(i / 2, i % 2) = row[(2 + 6 * side + i) * n];
+  return point;
 }
 
 RayArrays GroupedMatches::Directions(const MatchGroup& group) const {
@@ -170,7 +211,7 @@ GroupMotion GroupedMatches::MotionOf(const MatchGroup& group, const Pose& pose,
 }
 
 Eigen::Matrix3d GroupedMatches::Fundamental(const MatchGroup& group, const Pose& pose) const {
-  // CentredFundamental() of EssentialMatrix(), with what is the same for all poses made once.
+  // Of EssentialMatrix(), with what is the same for all poses made once.
   const Eigen::Vector3d b = BaselineOf(group, rig_, pose);
   const Eigen::Matrix3d RA = pose.R * unproject_[group.camera1];
   Eigen::Matrix3d bRA;
@@ -185,7 +226,7 @@ double GroupedMatches::Score(const Pose& pose, double threshold_px, double bound
   for (const MatchGroup& group : groups_) {
     if (sum > bound) break;
     const RowMajor3d F = Fundamental(group, pose);
-    sum = TruncatedSampsonSum(Pixels(group), F.data(), threshold_px * threshold_px, bound, sum,
+    sum = TruncatedSampsonSum(Rows(group), F.data(), threshold_px * threshold_px, bound, sum,
                               num_inliers);
   }
   return sum;
@@ -204,7 +245,7 @@ double GroupedMatches::ScoreInFront(const Pose& pose, double threshold_px, doubl
   for (const MatchGroup& group : groups_) {
     if (sum > bound) break;
     const RowMajor3d F = Fundamental(group, pose);
-    sum = TruncatedSampsonSumInFront(Pixels(group), Directions(group), F.data(),
+    sum = TruncatedSampsonSumInFront(Rows(group), Directions(group), F.data(),
                                      MotionOf(group, pose, threshold_px),
                                      threshold_px * threshold_px, bound, sum, num_inliers);
   }
@@ -218,7 +259,7 @@ int GroupedMatches::SelectInliers(const Pose& pose, double threshold_px,
   int count = 0;
   for (const MatchGroup& group : groups_) {
     const RowMajor3d F = Fundamental(group, pose);
-    count += SelectInFront(Pixels(group), Directions(group), F.data(),
+    count += SelectInFront(Rows(group), Directions(group), F.data(),
                            MotionOf(group, pose, threshold_px), threshold_px * threshold_px,
                            errors->data() + group.begin, inliers->data() + group.begin);
   }
@@ -229,7 +270,7 @@ void GroupedMatches::SquaredErrors(const Pose& pose, std::vector<double>* errors
   errors->resize(matches_.size());
   for (const MatchGroup& group : groups_) {
     const RowMajor3d F = Fundamental(group, pose);
-    SquaredSampsonErrors(Pixels(group), F.data(), errors->data() + group.begin);
+    SquaredSampsonErrors(Rows(group), F.data(), errors->data() + group.begin);
   }
 }
 

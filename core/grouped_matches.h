@@ -3,14 +3,18 @@
 #ifndef RIGEL_CORE_GROUPED_MATCHES_H_
 #define RIGEL_CORE_GROUPED_MATCHES_H_
 
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "rigel/core/match.h"
+#include "rigel/core/match_columns.h"
 #include "rigel/core/pose.h"
 #include "rigel/core/rays.h"
 #include "rigel/core/rig.h"
+#include "rigel/core/row_arrays.h"
+#include "rigel/core/row_point.h"
 #include "rigel/core/score_kernel.h"
 
 namespace rigel {
@@ -27,7 +31,10 @@ class GroupedMatches {
  public:
   GroupedMatches() = default;
   // `matches` must name cameras of `rig` only and have finite pixels. Copies what it needs.
-  GroupedMatches(const Rig& rig, const std::vector<Match>& matches);
+  // Of `columns`, sigma1, sigma2 and landmark are used: with sigmas all errors are those that a
+  // pixel of the median sigma would have.
+  GroupedMatches(const Rig& rig, const std::vector<Match>& matches,
+                 const MatchColumns& columns = {});
 
   // The same matches with the origin of the rig's body frame moved (rig_centre.h).
   GroupedMatches WithOrigin(const Eigen::Vector3d& origin) const;
@@ -38,6 +45,8 @@ class GroupedMatches {
 
   // In grouped order; within a group in the order of the input.
   const std::vector<Match>& matches() const { return matches_; }
+  // Empty if they are not known.
+  const std::vector<int64_t>& landmarks() const { return landmarks_; }
 
   // At most `count` of the matches, evenly spaced in their order. original() is then the position
   // in the subset.
@@ -47,14 +56,18 @@ class GroupedMatches {
   // kind only. The draw is the same in each call.
   GroupedMatches DrawnSubset(size_t count) const;
 
-  // Q diag(1 / fx, 1 / fy, 1): centred pixels, with 1 as third coordinate, to directions.
-  const Eigen::Matrix3d& Unprojection(int camera) const { return unproject_[camera]; }
+  // Q U: the points of rows (row_point.h) to directions in the body frame.
+  const Eigen::Matrix3d& UnprojectionToBody(int camera) const { return unproject_[camera]; }
 
   // Position in the input of the match at grouped position k.
   int original(int k) const { return original_[k]; }
 
-  // Centred pixels of a group.
-  PixelArrays Pixels(const MatchGroup& group) const;
+  // Points and derivatives of a group.
+  RowArrays Rows(const MatchGroup& group) const;
+
+  // Those of the match at grouped position k.
+  RowPoint Point1(int k) const { return PointAt(k, 0); }
+  RowPoint Point2(int k) const { return PointAt(k, 1); }
 
   // Directions of a group's rays.
   RayArrays Directions(const MatchGroup& group) const;
@@ -62,7 +75,7 @@ class GroupedMatches {
   // What the depths of a group depend on under `pose`; they are undecided below DecidedParallax().
   GroupMotion MotionOf(const MatchGroup& group, const Pose& pose, double threshold_px) const;
 
-  // The group's centred fundamental matrix under `pose`.
+  // F = U_j' E U_i of the group under `pose`; of pinholes the centred fundamental matrix.
   Eigen::Matrix3d Fundamental(const MatchGroup& group, const Pose& pose) const;
 
   // MSAC score: sum min(r^2, threshold^2) of the Sampson errors, pixels^2. Once it exceeds `bound`
@@ -95,14 +108,18 @@ class GroupedMatches {
   // Where `count` stretches of the order begin, and the end.
   std::vector<size_t> StretchBegins(size_t count) const;
   GroupedMatches Subset(const std::vector<size_t>& taken) const;
+  RowPoint PointAt(int k, int side) const;
 
   Rig rig_;
   std::vector<MatchGroup> groups_;
   std::vector<Match> matches_;
+  std::vector<int64_t> landmarks_;
   std::vector<int> original_;
   std::vector<Eigen::Matrix3d> unproject_;  // of each camera
-  // x1 of all, then y1, x2, y2; the six coordinates of the directions likewise.
-  std::vector<double> pixels_, directions_;
+  // x1 of all, then y1, x2, y2, and what RowArrays::general says, if that is needed; the six
+  // coordinates of the directions likewise.
+  std::vector<double> rows_, directions_;
+  bool general_ = false;
 };
 
 }  // namespace rigel

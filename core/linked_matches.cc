@@ -17,6 +17,7 @@ size_t Hash(const ImagePoint& p) {
   std::memcpy(&bits_u, &u, sizeof u);
   std::memcpy(&bits_v, &v, sizeof v);
   uint64_t h = (bits_u + static_cast<uint64_t>(p.camera)) * kFactor;
+  h = (h ^ static_cast<uint64_t>(p.landmark)) * kFactor;
   h = ((h ^ (h >> 32)) + bits_v) * kFactor;
   return static_cast<size_t>(h ^ (h >> 29));
 }
@@ -35,23 +36,25 @@ void JoinSame(const SamePoints& same, const std::vector<char>& mask, DisjointSet
 
 }  // namespace
 
-ImagePoint ImagePointOf(const Match& match, bool at_time2) {
+ImagePoint ImagePoints::At(int k, bool at_time2) const {
+  const Match& match = matches_[k];
+  const int camera = at_time2 ? match.camera2 : match.camera1;
+  if (!landmark_.empty()) return {camera, 0.0, 0.0, landmark_[k]};
   const Pixel& p = at_time2 ? match.pixel2 : match.pixel1;
-  return {at_time2 ? match.camera2 : match.camera1, p.x(), p.y()};
+  return {camera, p.x(), p.y(), 0};
 }
 
-SamePoints::SamePoints(const std::vector<Match>& matches, bool at_time2)
-    : next_(matches.size(), -1), last_(matches.size(), -1) {
+SamePoints::SamePoints(const ImagePoints& points, bool at_time2)
+    : next_(points.size(), -1), last_(points.size(), -1) {
   size_t size = 16;
-  while (size < 2 * matches.size()) size *= 2;
+  while (size < 2 * next_.size()) size *= 2;
   std::vector<int> table(size, -1);
-  for (size_t k = 0; k < matches.size(); ++k) {
-    const ImagePoint point = ImagePointOf(matches[k], at_time2);
+  for (int row = 0; row < points.size(); ++row) {
+    const ImagePoint point = points.At(row, at_time2);
     size_t place = Hash(point) & (size - 1);
-    while (table[place] >= 0 && !(ImagePointOf(matches[table[place]], at_time2) == point)) {
+    while (table[place] >= 0 && !(points.At(table[place], at_time2) == point)) {
       place = (place + 1) & (size - 1);
     }
-    const int row = static_cast<int>(k);
     int& first = table[place];
     if (first < 0) {
       first = row;
@@ -76,29 +79,21 @@ void DisjointSets::Join(int a, int b) {
   link_[std::max(a, b)] = std::min(a, b);
 }
 
-bool SharePixel1(const Match& a, const Match& b) {
-  return ImagePointOf(a, false) == ImagePointOf(b, false);
-}
-
-bool SharePixel2(const Match& a, const Match& b) {
-  return ImagePointOf(a, true) == ImagePointOf(b, true);
-}
-
-std::vector<std::vector<int>> LinkedMatches(const std::vector<Match>& matches,
+std::vector<std::vector<int>> LinkedMatches(const ImagePoints& points,
                                             const std::vector<char>& mask) {
-  DisjointSets linked(static_cast<int>(matches.size()));
-  JoinSame(SamePoints(matches, false), mask, &linked);
-  JoinSame(SamePoints(matches, true), mask, &linked);
+  DisjointSets linked(points.size());
+  JoinSame(SamePoints(points, false), mask, &linked);
+  JoinSame(SamePoints(points, true), mask, &linked);
   std::vector<std::vector<int>> sets;
-  std::vector<size_t> set_of(matches.size());
-  for (size_t k = 0; k < matches.size(); ++k) {
+  std::vector<size_t> set_of(points.size());
+  for (int k = 0; k < points.size(); ++k) {
     if (!mask[k]) continue;
-    const int root = linked.LeastOf(static_cast<int>(k));
-    if (root == static_cast<int>(k)) {
+    const int root = linked.LeastOf(k);
+    if (root == k) {
       set_of[k] = sets.size();
       sets.emplace_back();
     }
-    sets[set_of[root]].push_back(static_cast<int>(k));
+    sets[set_of[root]].push_back(k);
   }
   return sets;
 }

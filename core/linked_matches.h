@@ -2,27 +2,43 @@
 #ifndef RIGEL_CORE_LINKED_MATCHES_H_
 #define RIGEL_CORE_LINKED_MATCHES_H_
 
+#include <cstdint>
 #include <vector>
 
 #include "rigel/core/match.h"
 
 namespace rigel {
 
-// A point of an image. Equal to the last bit.
+// A point of an image: that of a landmark, or the same pixel to the last bit.
 struct ImagePoint {
   int camera;
-  double u, v;
+  double u, v;  // of a landmark: 0
+  int64_t landmark;
 
   bool operator==(const ImagePoint& other) const {
-    return camera == other.camera && u == other.u && v == other.v;
+    return camera == other.camera && u == other.u && v == other.v && landmark == other.landmark;
   }
 };
-ImagePoint ImagePointOf(const Match& match, bool at_time2);
+
+// The points of matches. `landmark` has a number for each of them, or is empty. Both must outlive
+// this object.
+class ImagePoints {
+ public:
+  ImagePoints(const std::vector<Match>& matches, const std::vector<int64_t>& landmark)
+      : matches_(matches), landmark_(landmark) {}
+  int size() const { return static_cast<int>(matches_.size()); }
+  ImagePoint At(int k, bool at_time2) const;
+  bool Share(int j, int k, bool at_time2) const { return At(j, at_time2) == At(k, at_time2); }
+
+ private:
+  const std::vector<Match>& matches_;
+  const std::vector<int64_t>& landmark_;
+};
 
 // Sets of matches with the same point at one of the times, as chains from match to match.
 class SamePoints {
  public:
-  SamePoints(const std::vector<Match>& matches, bool at_time2);
+  SamePoints(const ImagePoints& points, bool at_time2);
 
   // The first match of each set of at least two.
   const std::vector<int>& firsts() const { return firsts_; }
@@ -44,15 +60,10 @@ class DisjointSets {
   std::vector<int> link_;  // to a lesser number of the set
 };
 
-// True if `a` and `b` are of one key point at time 1, or at time 2: the same pixel of the same
-// camera, to the last bit.
-bool SharePixel1(const Match& a, const Match& b);
-bool SharePixel2(const Match& a, const Match& b);
-
-// The positions of the matches with mask[k] != 0 in sets: two matches that share a pixel are in one
+// The positions of the matches with mask[k] != 0 in sets: two matches that share a point are in one
 // set, so matches of different sets share none. Most sets have one match. Sets are in the order of
 // their first match, and so are the matches in each.
-std::vector<std::vector<int>> LinkedMatches(const std::vector<Match>& matches,
+std::vector<std::vector<int>> LinkedMatches(const ImagePoints& points,
                                             const std::vector<char>& mask);
 
 }  // namespace rigel

@@ -23,6 +23,16 @@ bool Rig::IsValid(std::string* error) const {
       *error = name + ": Q must be a rotation matrix";
       return false;
     }
+    for (const double sigma : {camera.rotation_sigma, camera.position_sigma, camera.focal_sigma}) {
+      if (!(sigma >= 0) || !std::isfinite(sigma)) {
+        *error = name + ": sigmas of the calibration must be finite and not negative";
+        return false;
+      }
+    }
+    if (!std::isfinite(camera.time_offset)) {
+      *error = name + ": the time offset must be finite";
+      return false;
+    }
   }
   return true;
 }

@@ -17,6 +17,12 @@ struct RigCamera {
   PinholeCamera intrinsics;
   Eigen::Matrix3d Q = Eigen::Matrix3d::Identity();
   Eigen::Vector3d s = Eigen::Vector3d::Zero();
+  // The stated error of the calibration, 1 sigma. 0: nothing is stated.
+  double rotation_sigma = 0.0;  // of Q, radians per axis
+  double position_sigma = 0.0;  // of s, metres per axis
+  double focal_sigma = 0.0;     // of both focal lengths alike, as a fraction
+  // Seconds that the camera fires after the times of the pair. Negative: before them.
+  double time_offset = 0.0;
 };
 static_assert(kSameLayoutEverywhere<RigCamera>, "no member of RigCamera may be aligned");
 
@@ -26,8 +32,8 @@ struct Rig {
 
   int size() const { return static_cast<int>(cameras.size()); }
 
-  // False with a message if a number is not finite, a focal length is not positive or a Q is
-  // not a rotation.
+  // False with a message if a number is not finite, a focal length is not positive, a sigma is
+  // negative or a Q is not a rotation.
   bool IsValid(std::string* error) const;
 };
 

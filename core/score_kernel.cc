@@ -18,35 +18,44 @@ RIGEL_KERNEL_BODY int Rounded(int size) {
   return (size + (kKernelPadding - 1)) / kKernelPadding * kKernelPadding;
 }
 
-// The matches from `begin` on, at most kBlock of them.
-RIGEL_KERNEL_BODY PixelArrays BlockAt(const PixelArrays& p, int begin) {
-  const int size = p.size - begin < kBlock ? p.size - begin : kBlock;
-  return {p.x1 + begin, p.y1 + begin, p.x2 + begin, p.y2 + begin, size};
+// The rows from `begin` on, at most kBlock of them.
+RIGEL_KERNEL_BODY RowArrays BlockAt(const RowArrays& rows, int begin) {
+  const int size = rows.size - begin < kBlock ? rows.size - begin : kBlock;
+  return RowsFrom(rows, begin, size);
 }
 
 // C^2 and the squared norm of its gradient; their quotient is r^2.
-RIGEL_KERNEL_BODY void NumeratorAndGradient(const PixelArrays& p, int i, const double F[9],
+template <bool kGeneral>
+RIGEL_KERNEL_BODY void NumeratorAndGradient(const RowArrays& p, int i, const double F[9],
                                             double* C2, double* g2) {
-  const SampsonTerms t = TermsOf(F, p.x1[i], p.y1[i], p.x2[i], p.y2[i]);
-  *C2 = t.C * t.C;
-  *g2 = t.gradient2;
+  if (kGeneral) {
+    const RowTerms t = TermsOf(F, RowAt(p, i));
+    *C2 = t.C * t.C;
+    *g2 = t.gradient2;
+  } else {
+    const SampsonTerms t = TermsOf(F, p.x1[i], p.y1[i], p.x2[i], p.y2[i]);
+    *C2 = t.C * t.C;
+    *g2 = t.gradient2;
+  }
 }
 
-RIGEL_KERNEL_BODY void TruncatedErrors(const PixelArrays& block, const double F[9], double t2,
+template <bool kGeneral>
+RIGEL_KERNEL_BODY void TruncatedErrors(const RowArrays& block, const double F[9], double t2,
                                        double e[kBlock]) {
   for (int i = 0; i < Rounded(block.size); ++i) {
     double C2, g2;
-    NumeratorAndGradient(block, i, F, &C2, &g2);
+    NumeratorAndGradient<kGeneral>(block, i, F, &C2, &g2);
     const double r2 = C2 / g2;
     // A NaN fails the comparison and counts t2.
     e[i] = r2 < t2 ? r2 : t2;
   }
 }
 
-RIGEL_KERNEL_BODY void Errors(const PixelArrays& block, const double F[9], double e[kBlock]) {
+template <bool kGeneral>
+RIGEL_KERNEL_BODY void Errors(const RowArrays& block, const double F[9], double e[kBlock]) {
   for (int i = 0; i < Rounded(block.size); ++i) {
     double C2, g2;
-    NumeratorAndGradient(block, i, F, &C2, &g2);
+    NumeratorAndGradient<kGeneral>(block, i, F, &C2, &g2);
     const double r2 = C2 / g2;
     e[i] = g2 > 0 ? r2 : std::numeric_limits<double>::infinity();
   }
@@ -75,14 +84,15 @@ RIGEL_KERNEL_BODY void RejectBehind(const RayArrays& rays, int begin, int size,
 }
 
 // `rays` and `motion` are null where depths are not looked at.
-RIGEL_KERNEL_BODY double Sum(const PixelArrays& pixels, const RayArrays* rays, const double F[9],
+template <bool kGeneral>
+RIGEL_KERNEL_BODY double Sum(const RowArrays& rows, const RayArrays* rays, const double F[9],
                              const GroupMotion* motion, double t2, double bound, double sum,
                              int* num_inliers) {
   int inliers = 0;
-  for (int begin = 0; begin < pixels.size && !(sum > bound); begin += kBlock) {
-    const PixelArrays block = BlockAt(pixels, begin);
+  for (int begin = 0; begin < rows.size && !(sum > bound); begin += kBlock) {
+    const RowArrays block = BlockAt(rows, begin);
     double e[kBlock];
-    TruncatedErrors(block, F, t2, e);
+    TruncatedErrors<kGeneral>(block, F, t2, e);
     if (rays != nullptr) RejectBehind(*rays, begin, block.size, *motion, t2, e);
     // What is not there counts as an outlier, and then adds nothing.
     for (int i = block.size; i < kBlock; ++i) e[i] = t2;
@@ -101,24 +111,25 @@ RIGEL_KERNEL_BODY double Sum(const PixelArrays& pixels, const RayArrays* rays, c
   return sum;
 }
 
-RIGEL_KERNEL_BODY void AllErrors(const PixelArrays& pixels, const double F[9],
-                                 double* squared_errors) {
-  for (int begin = 0; begin < pixels.size; begin += kBlock) {
-    const PixelArrays block = BlockAt(pixels, begin);
+template <bool kGeneral>
+RIGEL_KERNEL_BODY void AllErrors(const RowArrays& rows, const double F[9], double* squared_errors) {
+  for (int begin = 0; begin < rows.size; begin += kBlock) {
+    const RowArrays block = BlockAt(rows, begin);
     double e[kBlock];
-    Errors(block, F, e);
+    Errors<kGeneral>(block, F, e);
     for (int i = 0; i < block.size; ++i) squared_errors[begin + i] = e[i];
   }
 }
 
-RIGEL_KERNEL_BODY int Select(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
+template <bool kGeneral>
+RIGEL_KERNEL_BODY int Select(const RowArrays& rows, const RayArrays& rays, const double F[9],
                              const GroupMotion& motion, double t2, double* squared_errors,
                              char* inliers) {
   int total = 0;
-  for (int begin = 0; begin < pixels.size; begin += kBlock) {
-    const PixelArrays block = BlockAt(pixels, begin);
+  for (int begin = 0; begin < rows.size; begin += kBlock) {
+    const RowArrays block = BlockAt(rows, begin);
     double e[kBlock];
-    Errors(block, F, e);
+    Errors<kGeneral>(block, F, e);
     for (int i = 0; i < block.size; ++i) squared_errors[begin + i] = e[i];
     RejectBehind(rays, begin, block.size, motion, t2, e);
     int count = 0;
@@ -138,13 +149,14 @@ RIGEL_KERNEL_BODY void AllParallax(const RayArrays& rays, const double R[9], int
   for (int k = 0; k < size; ++k) sin2[k] = TermsOfMatch(rays, k, R, no_baseline).sin2;
 }
 
-RIGEL_KERNEL_BODY void Count(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
+template <bool kGeneral>
+RIGEL_KERNEL_BODY void Count(const RowArrays& rows, const RayArrays& rays, const double F[9],
                              const GroupMotion& motion, double t2, DepthCounts* counts) {
   int in_front = 0, behind = 0, decided = 0;
-  for (int begin = 0; begin < pixels.size; begin += kBlock) {
-    const PixelArrays block = BlockAt(pixels, begin);
+  for (int begin = 0; begin < rows.size; begin += kBlock) {
+    const RowArrays block = BlockAt(rows, begin);
     double e[kBlock], sign1[kBlock], sign2[kBlock];
-    Errors(block, F, e);
+    Errors<kGeneral>(block, F, e);
     for (int i = 0; i < Rounded(block.size); ++i) {
       const DepthTerms depth = TermsOfMatch(rays, begin + i, motion.R, motion.b);
       sign1[i] = depth.n1;
@@ -172,74 +184,94 @@ RIGEL_TARGET_AVX2 void AllParallaxAvx2(const RayArrays& rays, const double R[9],
   AllParallax(rays, R, size, sin2);
 }
 
-RIGEL_TARGET_AVX2 void CountAvx2(const PixelArrays& pixels, const RayArrays& rays,
-                                 const double F[9], const GroupMotion& motion, double t2,
-                                 DepthCounts* counts) {
-  Count(pixels, rays, F, motion, t2, counts);
+RIGEL_TARGET_AVX2 void CountAvx2(const RowArrays& rows, const RayArrays& rays, const double F[9],
+                                 const GroupMotion& motion, double t2, DepthCounts* counts) {
+  if (rows.general != nullptr) {
+    Count<true>(rows, rays, F, motion, t2, counts);
+  } else {
+    Count<false>(rows, rays, F, motion, t2, counts);
+  }
 }
 
-RIGEL_TARGET_AVX2 double SumAvx2(const PixelArrays& pixels, const double F[9], double t2,
-                                 double bound, double sum, int* num_inliers) {
-  return Sum(pixels, nullptr, F, nullptr, t2, bound, sum, num_inliers);
+RIGEL_TARGET_AVX2 double SumAvx2(const RowArrays& rows, const double F[9], double t2, double bound,
+                                 double sum, int* num_inliers) {
+  return rows.general != nullptr
+             ? Sum<true>(rows, nullptr, F, nullptr, t2, bound, sum, num_inliers)
+             : Sum<false>(rows, nullptr, F, nullptr, t2, bound, sum, num_inliers);
 }
 
-RIGEL_TARGET_AVX2 double SumInFrontAvx2(const PixelArrays& pixels, const RayArrays& rays,
+RIGEL_TARGET_AVX2 double SumInFrontAvx2(const RowArrays& rows, const RayArrays& rays,
                                         const double F[9], const GroupMotion& motion, double t2,
                                         double bound, double sum, int* num_inliers) {
-  return Sum(pixels, &rays, F, &motion, t2, bound, sum, num_inliers);
+  return rows.general != nullptr ? Sum<true>(rows, &rays, F, &motion, t2, bound, sum, num_inliers)
+                                 : Sum<false>(rows, &rays, F, &motion, t2, bound, sum, num_inliers);
 }
 
-RIGEL_TARGET_AVX2 void AllErrorsAvx2(const PixelArrays& pixels, const double F[9],
+RIGEL_TARGET_AVX2 void AllErrorsAvx2(const RowArrays& rows, const double F[9],
                                      double* squared_errors) {
-  AllErrors(pixels, F, squared_errors);
+  if (rows.general != nullptr) {
+    AllErrors<true>(rows, F, squared_errors);
+  } else {
+    AllErrors<false>(rows, F, squared_errors);
+  }
 }
 
-RIGEL_TARGET_AVX2 int SelectAvx2(const PixelArrays& pixels, const RayArrays& rays,
-                                 const double F[9], const GroupMotion& motion, double t2,
-                                 double* squared_errors, char* inliers) {
-  return Select(pixels, rays, F, motion, t2, squared_errors, inliers);
+RIGEL_TARGET_AVX2 int SelectAvx2(const RowArrays& rows, const RayArrays& rays, const double F[9],
+                                 const GroupMotion& motion, double t2, double* squared_errors,
+                                 char* inliers) {
+  return rows.general != nullptr
+             ? Select<true>(rows, rays, F, motion, t2, squared_errors, inliers)
+             : Select<false>(rows, rays, F, motion, t2, squared_errors, inliers);
 }
 #endif
 
 }  // namespace
 
-double TruncatedSampsonSum(const PixelArrays& pixels, const double F[9], double t2, double bound,
+double TruncatedSampsonSum(const RowArrays& rows, const double F[9], double t2, double bound,
                            double sum, int* num_inliers, [[maybe_unused]] CpuPath path) {
 #if RIGEL_HAS_AVX2_PATH
-  if (path == CpuPath::kAvx2) return SumAvx2(pixels, F, t2, bound, sum, num_inliers);
+  if (path == CpuPath::kAvx2) return SumAvx2(rows, F, t2, bound, sum, num_inliers);
 #endif
-  return Sum(pixels, nullptr, F, nullptr, t2, bound, sum, num_inliers);
+  return rows.general != nullptr
+             ? Sum<true>(rows, nullptr, F, nullptr, t2, bound, sum, num_inliers)
+             : Sum<false>(rows, nullptr, F, nullptr, t2, bound, sum, num_inliers);
 }
 
-double TruncatedSampsonSumInFront(const PixelArrays& pixels, const RayArrays& rays,
-                                  const double F[9], const GroupMotion& motion, double t2,
-                                  double bound, double sum, int* num_inliers,
-                                  [[maybe_unused]] CpuPath path) {
+double TruncatedSampsonSumInFront(const RowArrays& rows, const RayArrays& rays, const double F[9],
+                                  const GroupMotion& motion, double t2, double bound, double sum,
+                                  int* num_inliers, [[maybe_unused]] CpuPath path) {
 #if RIGEL_HAS_AVX2_PATH
   if (path == CpuPath::kAvx2) {
-    return SumInFrontAvx2(pixels, rays, F, motion, t2, bound, sum, num_inliers);
+    return SumInFrontAvx2(rows, rays, F, motion, t2, bound, sum, num_inliers);
   }
 #endif
-  return Sum(pixels, &rays, F, &motion, t2, bound, sum, num_inliers);
+  return rows.general != nullptr ? Sum<true>(rows, &rays, F, &motion, t2, bound, sum, num_inliers)
+                                 : Sum<false>(rows, &rays, F, &motion, t2, bound, sum, num_inliers);
 }
 
-void SquaredSampsonErrors(const PixelArrays& pixels, const double F[9], double* squared_errors,
+void SquaredSampsonErrors(const RowArrays& rows, const double F[9], double* squared_errors,
                           [[maybe_unused]] CpuPath path) {
 #if RIGEL_HAS_AVX2_PATH
-  if (path == CpuPath::kAvx2) return AllErrorsAvx2(pixels, F, squared_errors);
+  if (path == CpuPath::kAvx2) return AllErrorsAvx2(rows, F, squared_errors);
 #endif
-  AllErrors(pixels, F, squared_errors);
+  if (rows.general != nullptr) {
+    AllErrors<true>(rows, F, squared_errors);
+  } else {
+    AllErrors<false>(rows, F, squared_errors);
+  }
 }
 
-int SelectInFront(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
+int SelectInFront(const RowArrays& rows, const RayArrays& rays, const double F[9],
                   const GroupMotion& motion, double t2, double* squared_errors, char* inliers,
                   [[maybe_unused]] CpuPath path) {
 #if RIGEL_HAS_AVX2_PATH
   if (path == CpuPath::kAvx2) {
-    return SelectAvx2(pixels, rays, F, motion, t2, squared_errors, inliers);
+    return SelectAvx2(rows, rays, F, motion, t2, squared_errors, inliers);
   }
 #endif
-  return Select(pixels, rays, F, motion, t2, squared_errors, inliers);
+  return rows.general != nullptr
+             ? Select<true>(rows, rays, F, motion, t2, squared_errors, inliers)
+             : Select<false>(rows, rays, F, motion, t2, squared_errors, inliers);
 }
 
 void SquaredParallax(const RayArrays& rays, const double R[9], int size, double* sin2,
@@ -250,13 +282,17 @@ void SquaredParallax(const RayArrays& rays, const double R[9], int size, double*
   AllParallax(rays, R, size, sin2);
 }
 
-void CountDepths(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
+void CountDepths(const RowArrays& rows, const RayArrays& rays, const double F[9],
                  const GroupMotion& motion, double t2, DepthCounts* counts,
                  [[maybe_unused]] CpuPath path) {
 #if RIGEL_HAS_AVX2_PATH
-  if (path == CpuPath::kAvx2) return CountAvx2(pixels, rays, F, motion, t2, counts);
+  if (path == CpuPath::kAvx2) return CountAvx2(rows, rays, F, motion, t2, counts);
 #endif
-  Count(pixels, rays, F, motion, t2, counts);
+  if (rows.general != nullptr) {
+    Count<true>(rows, rays, F, motion, t2, counts);
+  } else {
+    Count<false>(rows, rays, F, motion, t2, counts);
+  }
 }
 
 }  // namespace rigel

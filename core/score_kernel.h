@@ -6,22 +6,9 @@
 #define RIGEL_CORE_SCORE_KERNEL_H_
 
 #include "rigel/core/cpu_path.h"
+#include "rigel/core/row_arrays.h"
 
 namespace rigel {
-
-// The kernels read whole vectors. So they read the arrays below beyond the last element, up to a
-// multiple of this number. The caller must own that memory; its content does not matter.
-inline constexpr int kKernelPadding = 8;
-
-// Matches of one camera pair in centred pixels (epipolar.h): (x1, y1) at time 1, (x2, y2) at
-// time 2.
-struct PixelArrays {
-  const double* x1;
-  const double* y1;
-  const double* x2;
-  const double* y2;
-  int size;
-};
 
 // Unit directions of their rays in the body frames.
 struct RayArrays {
@@ -41,27 +28,26 @@ struct GroupMotion {
 };
 
 // Adds sum min(r^2, t2) over the matches to `sum` and returns it. r is the Sampson error in pixels
-// under the row-major centred fundamental matrix F. `num_inliers`, unless null, grows by the number
+// under the row-major matrix F of the camera pair. `num_inliers`, unless null, grows by the number
 // of matches with r^2 < t2. A match with r = 0/0 (F = 0, an epipole) counts t2. Stops once
 // the sum exceeds `bound`. A sum up to `bound` is complete. One above it is a lower limit of the
 // complete sum, as no term is negative.
-double TruncatedSampsonSum(const PixelArrays& pixels, const double F[9], double t2, double bound,
+double TruncatedSampsonSum(const RowArrays& rows, const double F[9], double t2, double bound,
                            double sum, int* num_inliers, CpuPath path = BestCpuPath());
 
 // The same, but matches behind a camera count t2 too (TestCheirality() in cheirality.h says kBehind
 // or kMixed). The order of the terms is the same, so this sum is never below the one above.
-double TruncatedSampsonSumInFront(const PixelArrays& pixels, const RayArrays& rays,
-                                  const double F[9], const GroupMotion& motion, double t2,
-                                  double bound, double sum, int* num_inliers,
-                                  CpuPath path = BestCpuPath());
+double TruncatedSampsonSumInFront(const RowArrays& rows, const RayArrays& rays, const double F[9],
+                                  const GroupMotion& motion, double t2, double bound, double sum,
+                                  int* num_inliers, CpuPath path = BestCpuPath());
 
 // Squared Sampson errors one by one; infinite where r = 0/0.
-void SquaredSampsonErrors(const PixelArrays& pixels, const double F[9], double* squared_errors,
+void SquaredSampsonErrors(const RowArrays& rows, const double F[9], double* squared_errors,
                           CpuPath path = BestCpuPath());
 
 // The same errors. `inliers` gets 1 where the error is below t2 and the match does not lie behind a
 // camera, else 0. Returns the number of ones.
-int SelectInFront(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
+int SelectInFront(const RowArrays& rows, const RayArrays& rays, const double F[9],
                   const GroupMotion& motion, double t2, double* squared_errors, char* inliers,
                   CpuPath path = BestCpuPath());
 
@@ -78,7 +64,7 @@ struct DepthCounts {
 };
 
 // Adds those of a group.
-void CountDepths(const PixelArrays& pixels, const RayArrays& rays, const double F[9],
+void CountDepths(const RowArrays& rows, const RayArrays& rays, const double F[9],
                  const GroupMotion& motion, double t2, DepthCounts* counts,
                  CpuPath path = BestCpuPath());
 

@@ -57,7 +57,7 @@ Vector6d GradientAt(const FittedInliers& fit, const GroupedMatches& matches,
     options.loss = fit.loss;
     options.loss_scale = fit.loss_scale_sigmas * sigma;
     MotionNormalEquations equations;
-    AddNormalEquations(options, matches, group, matches.Pixels(group),
+    AddNormalEquations(options, matches, group, matches.Rows(group),
                        fit.factors.data() + group.begin, pose, SampsonParts::kGradient, &equations);
     sum += equations.gradient / (sigma * sigma);
   }
@@ -111,15 +111,13 @@ class WeightedRows {
     SampsonRow row;
     for (size_t g = 0; g < matches.groups().size(); ++g) {
       const MatchGroup& group = matches.groups()[g];
-      const PixelArrays p = matches.Pixels(group);
       for (int i = 0; i < group.size; ++i) {
         const int k = group.begin + i;
         group_of_[k] = static_cast<int>(g);
         if (set_of_[k] == k) is_taken[k] = num_sets++ % stride == 0 ? 1 : 0;
         if (!is_taken[set_of_[k]] || !(fit.factors[k] > 0)) continue;
         ++num_rows;
-        if (!DifferentiateSampsonOnce(linear[g], {p.x1[i], p.y1[i], 1.0}, {p.x2[i], p.y2[i], 1.0},
-                                      &row)) {
+        if (!DifferentiateSampsonOnce(linear[g], matches.Point1(k), matches.Point2(k), &row)) {
           continue;
         }
         const double weight = fit.factors[k] / noise.sigma_of[g];
@@ -216,13 +214,13 @@ FitInformation InformationOfFit(const FittedInliers& fit, const GroupedMatches& 
                 (sums[g].n + kPooledWeight);
     }
     MotionNormalEquations equations;
-    AddNormalEquations(SampsonKernelOptions(), matches, group, matches.Pixels(group), factors, pose,
+    AddNormalEquations(SampsonKernelOptions(), matches, group, matches.Rows(group), factors, pose,
                        SampsonParts::kAll, &equations);
     const Matrix6d H = equations.curvature / (noise.sigma_of[g] * noise.sigma_of[g]);
     information.observed += H;
     information.scatter += v_of[g] * H;
     information.noise +=
-        NoiseInformation(linear[g], matches.Pixels(group), factors,
+        NoiseInformation(linear[g], matches, group, factors,
                          std::max(kMinSampled, kNoiseSample * group.size / matches.size()));
   }
   // With a given noise and no shared pixel the scatter is known.

@@ -12,6 +12,7 @@
 #include "rigel/core/body_axes.h"
 #include "rigel/core/pixel_unit.h"
 #include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/match_file_list.h"
 #include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/solver_choice.h"
 #include "rigel/tools/tool.h"

@@ -13,6 +13,7 @@
 #include "rigel/problems/benchmarks/refine_benchmark.h"
 #include "rigel/problems/benchmarks/solver_benchmark.h"
 #include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/match_file_list.h"
 #include "rigel/problems/io/table.h"
 #include "rigel/problems/scenes/prior_source.h"
 #include "rigel/refine/solver_choice.h"

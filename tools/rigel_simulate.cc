@@ -57,9 +57,10 @@ DEFINE_double(rotation_deg, 1,
               "rotation angle of each pair, degrees. With --scene=street its yaw, the sign random");
 DEFINE_string(rotation_axis, "y", "rotation axis: y (Y of the body) or random");
 DEFINE_string(motion, "forward",
-              "direction of translation: forward, random, sideways or planar; |t| is 1 m. With "
-              "--scene=street it is car: forward on an arc (Ackermann), with pitch and roll of "
-              "N(0, 0.2 degrees)");
+              "direction of translation: forward, random, sideways or planar; |t| is 1 m. Or turn: "
+              "the rotation alone, or still: no motion. With --scene=street car: forward on an arc "
+              "(Ackermann), with pitch and roll of N(0, 0.2 degrees); or turn: the yaw alone; or "
+              "still");
 DEFINE_double(inter_share, 0, "share of matches between different cameras, 0 to 1");
 DEFINE_double(outlier_share, 0,
               "share of outliers, 0 to 1: their second point is uniform in the image");
@@ -67,6 +68,20 @@ DEFINE_double(
     moving_share, 0,
     "share of matches on a car that moves by itself, 0 to 1; it moves 0.5 to 2 m. These are not "
     "counted as outliers");
+DEFINE_double(
+    calibration_sigma_deg, 0,
+    "1-sigma error of the calibration, degrees: each camera that sees the scene is turned by this "
+    "about each axis. The files state the rig without it. The error is the same in all pairs");
+DEFINE_double(calibration_sigma_m, 0,
+              "the same of the positions of the cameras, metres along each axis");
+DEFINE_bool(state_calibration_sigma, false,
+            "write a line camera_sigma for each camera, with --calibration_sigma_deg and "
+            "--calibration_sigma_m");
+DEFINE_string(
+    camera_times, "",
+    "seconds that each camera fires after the times of its pair, separated by commas. The "
+    "files have lines camera_time and time. By default as the rig file says, else 0");
+DEFINE_double(interval_s, 0.1, "seconds between the times of a pair, if cameras have other times");
 DEFINE_bool(
     match_scores, false,
     "write match scores like Lowe's ratio, lower for inliers than for outliers. Off: all scores "
@@ -179,13 +194,23 @@ std::string WriteFiles(const Simulation& simulation) {
   return failed < num_pairs ? errors[failed] : "";
 }
 
-bool MatchesFromFlags(SceneMatchOptions* options, std::string* error) {
-  for (const std::string& word : SplitCommas(FLAGS_camera_noise_px)) {
-    double sigma;
-    if (!ParseFinite(word, &sigma)) {
-      return WrongValue("camera_noise_px", word, "numbers, separated by commas", error);
+bool NumbersFromFlag(const char* flag, const std::string& text, std::vector<double>* numbers,
+                     std::string* error) {
+  for (const std::string& word : SplitCommas(text)) {
+    double number;
+    if (!ParseFinite(word, &number)) {
+      return WrongValue(flag, word, "numbers, separated by commas", error);
     }
-    options->camera_noise_px.push_back(sigma);
+    numbers->push_back(number);
+  }
+  return true;
+}
+
+bool MatchesFromFlags(SceneMatchOptions* options, std::string* error) {
+  if (!NumbersFromFlag("camera_noise_px", FLAGS_camera_noise_px, &options->camera_noise_px,
+                       error) ||
+      !NumbersFromFlag("camera_times", FLAGS_camera_times, &options->camera_times, error)) {
+    return false;
   }
   if (!options->camera_noise_px.empty() && IsGiven("noise_px")) {
     return Refuse("--noise_px: --camera_noise_px replaces it", error);
@@ -198,6 +223,10 @@ bool MatchesFromFlags(SceneMatchOptions* options, std::string* error) {
   options->inter_share = FLAGS_inter_share;
   options->outlier_share = FLAGS_outlier_share;
   options->moving_share = FLAGS_moving_share;
+  options->calibration_sigma_deg = FLAGS_calibration_sigma_deg;
+  options->calibration_sigma_m = FLAGS_calibration_sigma_m;
+  options->state_calibration_sigma = FLAGS_state_calibration_sigma;
+  options->interval_s = FLAGS_interval_s;
   options->match_scores = FLAGS_match_scores;
   options->seed = FLAGS_seed;
   return true;
@@ -208,8 +237,8 @@ bool BoxFromFlags(SceneOptions* options, std::string* error) {
   if (!flag.empty()) return Refuse("--" + flag + ": is of --scene=street", error);
   if (!ParseMotionPattern(FLAGS_motion, &options->motion)) {
     const std::string street = FLAGS_motion == "car" ? ". A car needs --scene=street" : "";
-    return WrongValue("motion", FLAGS_motion, "forward, random, sideways or planar" + street,
-                      error);
+    return WrongValue("motion", FLAGS_motion,
+                      "forward, random, sideways, planar, turn or still" + street, error);
   }
   if (!ParseRotationAxisPattern(FLAGS_rotation_axis, &options->rotation_axis)) {
     return WrongValue("rotation_axis", FLAGS_rotation_axis, "y or random", error);
@@ -227,17 +256,29 @@ bool StreetFromFlags(StreetOptions* options, std::string* error) {
   if (FLAGS_rig.empty()) return Refuse("--rig is missing: name a rig file (JSON)", error);
   const std::string flag = FirstGiven({"num_cameras", "ring", "rotation_axis"});
   if (!flag.empty()) return Refuse("--" + flag + ": is of --scene=box", error);
-  if (IsGiven("motion") && FLAGS_motion != "car") {
-    return WrongValue("motion", FLAGS_motion, "car, the motion on the street", error);
+  if (IsGiven("motion") && !ParseStreetMotion(FLAGS_motion, &options->motion)) {
+    return WrongValue("motion", FLAGS_motion, "car, turn or still, the motions on the street",
+                      error);
   }
   options->ground_m = FLAGS_ground_m;
   options->rotation_deg = FLAGS_rotation_deg;
   options->distance_m = FLAGS_distance_m;
-  // A camera of its own, or as many as --camera_noise_px has: these are known of the rig later.
-  const int num_cameras = std::max(2, static_cast<int>(options->camera_noise_px.size()));
+  // As many cameras as these flags have numbers, at least two: the rig is known later.
+  const int num_cameras = static_cast<int>(
+      std::max({size_t{2}, options->camera_noise_px.size(), options->camera_times.size()}));
   if (options->AreNumbersValid(error) && options->AreMatchesValid(num_cameras, error)) return true;
   *error = "--" + *error;
   return false;
+}
+
+// Whether no flag asks for a motion that --motion does not have.
+bool MotionFlagsFit(std::string* error) {
+  const bool still = FLAGS_motion == "still";
+  if (!still && FLAGS_motion != "turn") return true;
+  const std::string flag = FirstGiven(still ? std::vector<std::string>{"rotation_deg", "distance_m"}
+                                            : std::vector<std::string>{"distance_m"});
+  if (flag.empty()) return true;
+  return Refuse("--" + flag + ": --motion=" + FLAGS_motion + " has none", error);
 }
 
 bool SettingsFromFlags(Simulation* simulation, std::string* error) {
@@ -252,6 +293,7 @@ bool SettingsFromFlags(Simulation* simulation, std::string* error) {
                             : !BoxFromFlags(&simulation->box, error)) {
     return false;
   }
+  if (!MotionFlagsFit(error)) return false;
   if (FLAGS_every < 1) return Refuse("--every: expected at least 1", error);
   if (!CheckThreads(FLAGS_threads, 1, error)) return false;
   const std::string flag =

@@ -49,9 +49,10 @@ std::vector<Match> ExactMatches(const FramePair& pair) {
 
 // Fills the rows of the matches of the mask at `pose`, by their positions in `matches`; takes those
 // at an epipole out of the mask.
-std::vector<SampsonRow> RowsOf(const Rig& rig, const std::vector<Match>& matches, const Pose& pose,
+std::vector<SampsonRow> RowsOf(const Rig& rig, const std::vector<Match>& matches,
+                               const MatchColumns& columns, const Pose& pose,
                                std::vector<char>* mask) {
-  const GroupedMatches grouped(rig, matches);
+  const GroupedMatches grouped(rig, matches, columns);
   const MotionBasis basis = FullBasis(pose, true);
   std::vector<GroupLinearization> linear;
   LinearizeGroups(grouped, ResidualKind::kSampson, pose, &basis, &linear);
@@ -60,30 +61,25 @@ std::vector<SampsonRow> RowsOf(const Rig& rig, const std::vector<Match>& matches
     const MatchGroup& group = grouped.groups()[g];
     for (int i = group.begin; i < group.begin + group.size; ++i) {
       const int k = grouped.original(i);
-      const Match& m = matches[k];
       if (!(*mask)[k]) continue;
       (*mask)[k] =
-          DifferentiateSampson(linear[g], CentredPixel(rig.cameras[m.camera1].intrinsics, m.pixel1),
-                               CentredPixel(rig.cameras[m.camera2].intrinsics, m.pixel2), &rows[k])
-              ? 1
-              : 0;
+          DifferentiateSampson(linear[g], grouped.Point1(i), grouped.Point2(i), &rows[k]) ? 1 : 0;
     }
   }
   return rows;
 }
 
 // The correlation of the errors of the matches `set`, by the pixels they share (as measured).
-Eigen::MatrixXd CorrelationOf(const std::vector<Match>& measured,
-                              const std::vector<SampsonRow>& rows, const std::vector<int>& set) {
+Eigen::MatrixXd CorrelationOf(const ImagePoints& measured, const std::vector<SampsonRow>& rows,
+                              const std::vector<int>& set) {
   const auto n = static_cast<int>(set.size());
   Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n, n);
   for (int i = 0; i < n; ++i) {
     const UnalignedMatrix<4>& gradient = rows[set[i]].gradient;
     for (int j = 0; j < n; ++j) {
       const UnalignedMatrix<4>& other = rows[set[j]].gradient;
-      const Match &a = measured[set[i]], &b = measured[set[j]];
-      if (SharePixel1(a, b)) S(i, j) += gradient.head<2>().dot(other.head<2>());
-      if (SharePixel2(a, b)) S(i, j) += gradient.tail<2>().dot(other.tail<2>());
+      if (measured.Share(set[i], set[j], false)) S(i, j) += gradient.head<2>().dot(other.head<2>());
+      if (measured.Share(set[i], set[j], true)) S(i, j) += gradient.tail<2>().dot(other.tail<2>());
     }
   }
   return S;
@@ -91,17 +87,17 @@ Eigen::MatrixXd CorrelationOf(const std::vector<Match>& measured,
 
 // Adds what one coordinate of the pixels makes of the information: each pixel once, as it changes
 // the rows of all matches that have it.
-void AddLinkedNoise(const std::vector<Match>& measured, const std::vector<SampsonRow>& rows,
+void AddLinkedNoise(const ImagePoints& measured, const std::vector<SampsonRow>& rows,
                     const std::vector<int>& set, int coordinate, const Eigen::MatrixXd& whiten,
                     Matrix6d* noise) {
-  const auto share = coordinate < 2 ? SharePixel1 : SharePixel2;
+  const bool at_time2 = coordinate >= 2;
   const auto n = static_cast<int>(set.size());
   std::vector<char> seen(n, 0);
   for (int i = 0; i < n; ++i) {
     if (seen[i]) continue;
     Eigen::MatrixXd change = Eigen::MatrixXd::Zero(6, n);
     for (int j = i; j < n; ++j) {
-      if (!share(measured[set[i]], measured[set[j]])) continue;
+      if (!measured.Share(set[i], set[j], at_time2)) continue;
       seen[j] = 1;
       change.col(j) = rows[set[j]].by_motion_and_pixels.col(coordinate);
     }
@@ -113,7 +109,7 @@ void AddLinkedNoise(const std::vector<Match>& measured, const std::vector<Sampso
 // Adds the matches `set`, which are linked by the pixels they share, with the inverse of the
 // correlation of their errors as weight. Where that has no rank, errors follow from others and add
 // nothing: those of a repeated match.
-void AddLinked(const std::vector<Match>& measured, const std::vector<SampsonRow>& rows,
+void AddLinked(const ImagePoints& measured, const std::vector<SampsonRow>& rows,
                const std::vector<int>& set, double variance, MatchInformation* information) {
   // Of a correlation matrix: far above the rounding of a zero.
   constexpr double kMinEigenvalue = 1e-6;
@@ -142,10 +138,12 @@ bool SumInliers(const FramePair& pair, const Eigen::Vector3d& centre, const Pose
   const double variance = *pair.noise_px * *pair.noise_px;
   std::vector<char> mask = TrueInliers(pair);
   const std::vector<SampsonRow> rows =
-      RowsOf(WithOrigin(pair.rig, centre), exact ? ExactMatches(pair) : pair.matches, truth, &mask);
-  for (const std::vector<int>& set : LinkedMatches(pair.matches, mask)) {
+      RowsOf(WithOrigin(pair.rig, centre), exact ? ExactMatches(pair) : pair.matches, pair.columns,
+             truth, &mask);
+  const ImagePoints points(pair.matches, pair.columns.landmark);
+  for (const std::vector<int>& set : LinkedMatches(points, mask)) {
     if (set.size() > static_cast<size_t>(kMaxLinkedMatches)) return false;
-    AddLinked(pair.matches, rows, set, variance, information);
+    AddLinked(points, rows, set, variance, information);
   }
   if (exact) information->noise.setZero();
   return true;

@@ -10,7 +10,6 @@
 #include "rigel/core/angles.h"
 #include "rigel/problems/io/gzip.h"
 #include "rigel/problems/io/input_file.h"
-#include "rigel/problems/io/match_file_list.h"
 #include "rigel/problems/io/match_file_words.h"
 #include "rigel/problems/io/match_lines.h"
 #include "rigel/problems/io/match_rows.h"
@@ -56,10 +55,12 @@ class Parser : private MatchLines {
   }
 
  private:
+  // What lines say of cameras, by their numbers. All but the line is of one kind of line.
   struct DeclaredCamera {
     RigCamera camera;
     int64_t line;
   };
+  using DeclaredCameras = std::map<int, DeclaredCamera>;
 
   bool Direction(std::optional<Eigen::Vector3d>* value) {
     Eigen::Vector3d v;
@@ -75,12 +76,19 @@ class Parser : private MatchLines {
     return true;
   }
 
-  bool SigmaDeg(std::optional<double>* radians) {
+  bool SigmaDeg(size_t column, double* radians) {
     double degrees;
-    if (!PositiveNumber(1, &degrees)) return false;
+    if (!PositiveNumber(column, &degrees)) return false;
     // The smallest doubles become zero in radians.
-    if (!(DegToRad(degrees) > 0)) return FailColumn(1, "a positive number");
+    if (!(DegToRad(degrees) > 0)) return FailColumn(column, "a positive number");
     *radians = DegToRad(degrees);
+    return true;
+  }
+
+  bool SigmaDeg(std::optional<double>* radians) {
+    double sigma;
+    if (!SigmaDeg(1, &sigma)) return false;
+    *radians = sigma;
     return true;
   }
 
@@ -115,10 +123,39 @@ class Parser : private MatchLines {
     }
     declared.camera.Q = body_from_camera.R;
     declared.camera.s = body_from_camera.t;
-    const auto [known, is_new] = cameras_.emplace(index, declared);
+    return Declare(index, declared, "camera", &cameras_);
+  }
+
+  bool Declare(int index, const DeclaredCamera& declared, const char* what,
+               DeclaredCameras* cameras) {
+    const auto [known, is_new] = cameras->emplace(index, declared);
     if (is_new) return true;
-    return Fail("camera " + std::to_string(index) + " for the second time, expected once (line " +
-                std::to_string(known->second.line) + ")");
+    return Fail(std::string(what) + " " + std::to_string(index) +
+                " for the second time, expected once (line " + std::to_string(known->second.line) +
+                ")");
+  }
+
+  bool CameraSigma() {
+    constexpr size_t kColumns = 4;  // without the one that may be absent
+    int index;
+    DeclaredCamera declared;
+    declared.line = line();
+    RigCamera& camera = declared.camera;
+    const bool has_focal = num_columns() == kColumns + 1;
+    if ((!has_focal && !CheckColumns(kColumns)) || !Integer(1, 0, &index) ||
+        !SigmaDeg(2, &camera.rotation_sigma) || !PositiveNumber(3, &camera.position_sigma) ||
+        (has_focal && !PositiveNumber(kColumns, &camera.focal_sigma))) {
+      return false;
+    }
+    return Declare(index, declared, "camera_sigma", &sigmas_);
+  }
+
+  bool CameraTime() {
+    int index;
+    DeclaredCamera declared;
+    declared.line = line();
+    if (!Integer(1, 0, &index) || !Number(2, &declared.camera.time_offset)) return false;
+    return Declare(index, declared, "camera_time", &times_);
   }
 
   bool Time() {
@@ -163,6 +200,10 @@ class Parser : private MatchLines {
         return Format();
       case kCamera:
         return Camera();
+      case kCameraSigma:
+        return CameraSigma();
+      case kCameraTime:
+        return CameraTime();
       case kTime:
         return Time();
       case kTruth:
@@ -218,7 +259,8 @@ class Parser : private MatchLines {
       const int id = FindKeyword(Column(0));
       if (id < 0) return UnknownKeyword(seen[kFormat] > 0);
       const Keyword& keyword = kKeywords[id];
-      if (seen[id] > 0 && id != kCamera) {
+      const bool once = id != kCamera && id != kCameraSigma && id != kCameraTime;
+      if (seen[id] > 0 && once) {
         return Fail("'" + std::string(keyword.name) +
                     "' for the second time, expected once (line " + std::to_string(seen[id]) + ")");
       }
@@ -253,7 +295,29 @@ class Parser : private MatchLines {
       }
       pair_.rig.cameras.push_back(declared.camera);
     }
+    return FinishSigmasAndTimes();
+  }
+
+  // These lines may be before those of their cameras.
+  bool FinishSigmasAndTimes() {
+    for (const auto& [index, declared] : sigmas_) {
+      if (!IsDeclared(index, declared.line)) return false;
+      RigCamera& camera = pair_.rig.cameras[index];
+      camera.rotation_sigma = declared.camera.rotation_sigma;
+      camera.position_sigma = declared.camera.position_sigma;
+      camera.focal_sigma = declared.camera.focal_sigma;
+    }
+    for (const auto& [index, declared] : times_) {
+      if (!IsDeclared(index, declared.line)) return false;
+      pair_.rig.cameras[index].time_offset = declared.camera.time_offset;
+    }
     return true;
+  }
+
+  bool IsDeclared(int index, int64_t line) {
+    if (index < pair_.rig.size()) return true;
+    return FailAt(line, "K is '" + std::to_string(index) + "', expected a declared camera (0 to " +
+                            std::to_string(pair_.rig.size() - 1) + ")");
   }
 
   bool ParseRows() {
@@ -283,10 +347,28 @@ class Parser : private MatchLines {
   }
 
   FramePair pair_;
-  std::map<int, DeclaredCamera> cameras_;
+  DeclaredCameras cameras_, sigmas_, times_;
   MatchRows rows_;
   int num_matches_ = 0;
 };
+
+// The lines of cameras that state an error or another time than the pair's.
+void WriteSigmasAndTimes(const Rig& rig, MatchText* f) {
+  for (int k = 0; k < rig.size(); ++k) {
+    const RigCamera& camera = rig.cameras[k];
+    if (camera.rotation_sigma == 0 && camera.position_sigma == 0 && camera.focal_sigma == 0) {
+      continue;
+    }
+    f->Word(kKeywords[kCameraSigma].name).Number(k);
+    f->SigmaDeg(camera.rotation_sigma).Number(camera.position_sigma);
+    if (camera.focal_sigma != 0) f->Number(camera.focal_sigma);
+    f->EndLine();
+  }
+  for (int k = 0; k < rig.size(); ++k) {
+    if (rig.cameras[k].time_offset == 0) continue;
+    f->Word(kKeywords[kCameraTime].name).Number(k).Number(rig.cameras[k].time_offset).EndLine();
+  }
+}
 
 }  // namespace
 
@@ -323,6 +405,7 @@ std::string FormatMatches(const FramePair& pair) {
     f.Number(c.fx).Number(c.fy).Number(c.cx).Number(c.cy).Number(c.width).Number(c.height);
     f.Quaternion(camera.Q).Vector(camera.s).EndLine();
   }
+  WriteSigmasAndTimes(pair.rig, &f);
   if (pair.time1 && pair.time2) {
     f.Word(kKeywords[kTime].name).Number(*pair.time1).Number(*pair.time2).EndLine();
   }
@@ -386,27 +469,6 @@ bool IsMatchFileName(const std::string& name) {
   std::string_view plain = name;
   if (EndsWith(plain, kCompressed)) plain.remove_suffix(kCompressed.size());
   return plain.size() > kSuffix.size() && EndsWith(plain, kSuffix);
-}
-
-std::vector<std::string> ListMatchFiles(const std::string& comma_separated,
-                                        std::vector<std::string>* errors,
-                                        std::vector<std::string>* notes) {
-  MatchFileList list;
-  for (size_t begin = 0; begin <= comma_separated.size();) {
-    const size_t comma = std::min(comma_separated.find(',', begin), comma_separated.size());
-    const std::string item = comma_separated.substr(begin, comma - begin);
-    begin = comma + 1;
-    if (!item.empty()) list.Add(item);
-  }
-  errors->insert(errors->end(), list.errors.begin(), list.errors.end());
-  if (notes != nullptr && !list.by_number.empty()) {
-    const size_t more = list.by_number.size() - 1;
-    notes->push_back(Printable(list.by_number.front()) +
-                     (more > 0 ? " and " + std::to_string(more) + " more directories" : "") +
-                     ": files are taken in the order of the numbers in their names, which is not "
-                     "the byte order of the names");
-  }
-  return std::move(list.paths);
 }
 
 }  // namespace rigel

@@ -2,6 +2,8 @@
 //
 //   format rigmatch 1
 //   camera K pinhole FX FY CX CY WIDTH HEIGHT QW QX QY QZ SX SY SZ
+//   camera_sigma K ROT_DEG POS_M [FOCAL_FRACTION]
+//   camera_time K DT
 //   time T1 T2
 //   truth QW QX QY QZ TX TY TZ
 //   gravity1 GX GY GZ
@@ -77,19 +79,6 @@ std::string PrintablePath(const std::string& path);
 
 // Whether a directory's file of that name is a match file: "NAME.matches" or "NAME.matches.gz".
 bool IsMatchFileName(const std::string& name);
-
-// Expands a comma-separated list of files and directories, in the order given.
-// - A directory means the match files in it, not those in its subdirectories. If all names have
-//   numbers, the files are in the order of these, else in byte order. If the two orders differ, a
-//   line of *notes (may be null) says so.
-// - A file may have any name. "-" is stdin, once.
-// - Empty items are skipped. A file that is named twice is listed twice.
-// One message is appended to *errors for each item that is not there, cannot be listed, or is a
-// directory without match files. So it is for each compressed file whose plain copy is there too:
-// the plain one is taken. The other items are still returned.
-std::vector<std::string> ListMatchFiles(const std::string& comma_separated,
-                                        std::vector<std::string>* errors,
-                                        std::vector<std::string>* notes = nullptr);
 
 }  // namespace rigel
 

@@ -1,9 +1,11 @@
 #include "rigel/problems/io/match_file_list.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "rigel/problems/io/directory.h"
 #include "rigel/problems/io/match_file.h"
@@ -12,6 +14,17 @@
 
 namespace rigel {
 namespace {
+
+// The match files of some paths, as they are found out.
+struct MatchFileList {
+  std::vector<std::string> paths;
+  std::vector<std::string> errors;
+  std::vector<std::string> by_number;  // directories whose order is not byte order
+  bool has_stdin = false;
+
+  // Adds a file, "-" for stdin, or the match files of a directory.
+  void Add(const std::string& path);
+};
 
 // Adds the match files of a directory.
 void AddDirectory(const std::string& directory, MatchFileList* list) {
@@ -44,8 +57,6 @@ void AddDirectory(const std::string& directory, MatchFileList* list) {
   }
 }
 
-}  // namespace
-
 void MatchFileList::Add(const std::string& path) {
   namespace fs = std::filesystem;
   if (path == "-") {
@@ -66,6 +77,29 @@ void MatchFileList::Add(const std::string& path) {
   } else {
     paths.push_back(path);
   }
+}
+
+}  // namespace
+
+std::vector<std::string> ListMatchFiles(const std::string& comma_separated,
+                                        std::vector<std::string>* errors,
+                                        std::vector<std::string>* notes) {
+  MatchFileList list;
+  for (size_t begin = 0; begin <= comma_separated.size();) {
+    const size_t comma = std::min(comma_separated.find(',', begin), comma_separated.size());
+    const std::string item = comma_separated.substr(begin, comma - begin);
+    begin = comma + 1;
+    if (!item.empty()) list.Add(item);
+  }
+  errors->insert(errors->end(), list.errors.begin(), list.errors.end());
+  if (notes != nullptr && !list.by_number.empty()) {
+    const size_t more = list.by_number.size() - 1;
+    notes->push_back(Printable(list.by_number.front()) +
+                     (more > 0 ? " and " + std::to_string(more) + " more directories" : "") +
+                     ": files are taken in the order of the numbers in their names, which is not "
+                     "the byte order of the names");
+  }
+  return std::move(list.paths);
 }
 
 }  // namespace rigel

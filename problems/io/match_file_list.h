@@ -1,4 +1,4 @@
-// Which match files a path stands for.
+// Which match files a list of paths stands for.
 #ifndef RIGEL_PROBLEMS_IO_MATCH_FILE_LIST_H_
 #define RIGEL_PROBLEMS_IO_MATCH_FILE_LIST_H_
 
@@ -7,16 +7,18 @@
 
 namespace rigel {
 
-// The match files of some paths, as they are found out.
-struct MatchFileList {
-  std::vector<std::string> paths;
-  std::vector<std::string> errors;
-  std::vector<std::string> by_number;  // directories whose order is not byte order
-  bool has_stdin = false;
-
-  // Adds a file, "-" for stdin, or the match files of a directory.
-  void Add(const std::string& path);
-};
+// Expands a comma-separated list of files and directories, in the order given.
+// - A directory means the match files in it, not those in its subdirectories. If all names have
+//   numbers, the files are in the order of these, else in byte order. If the two orders differ, a
+//   line of *notes (may be null) says so.
+// - A file may have any name. "-" is stdin, once.
+// - Empty items are skipped. A file that is named twice is listed twice.
+// One message is appended to *errors for each item that is not there, cannot be listed, or is a
+// directory without match files. So it is for each compressed file whose plain copy is there too:
+// the plain one is taken. The other items are still returned.
+std::vector<std::string> ListMatchFiles(const std::string& comma_separated,
+                                        std::vector<std::string>* errors,
+                                        std::vector<std::string>* notes = nullptr);
 
 }  // namespace rigel
 

@@ -12,6 +12,8 @@ namespace rigel::match_file {
 enum KeywordId {
   kFormat,
   kCamera,
+  kCameraSigma,
+  kCameraTime,
   kTime,
   kTruth,
   kGravity1,
@@ -41,6 +43,8 @@ inline constexpr size_t kAnyColumns = 0;
 inline constexpr std::array<Keyword, kNumKeywords> kKeywords = {{
     {"format", "format rigmatch 1", 3},
     {"camera", "camera K pinhole FX FY CX CY WIDTH HEIGHT QW QX QY QZ SX SY SZ", 16},
+    {"camera_sigma", "camera_sigma K ROT_DEG POS_M [FOCAL_FRACTION]", kAnyColumns},
+    {"camera_time", "camera_time K DT", 3},
     {"time", "time T1 T2", 3},
     {"truth", "truth QW QX QY QZ TX TY TZ", 8},
     {"gravity1", "gravity1 GX GY GZ", 4},

@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include "rigel/core/angles.h"
 #include "rigel/problems/io/input_file.h"
 #include "rigel/problems/io/json_message.h"
 #include "rigel/problems/io/json_text.h"
@@ -133,6 +134,14 @@ bool ReadOlderKeys(const Json& json, const std::string& model, PinholeCamera* ca
   return AnyNot0(d.data(), d.data() + d.size());
 }
 
+// Degrees and metres, both positive.
+void ReadSigma(const Json& value, RigCamera* camera) {
+  constexpr char kName[] = "camera_sigma";
+  Numbers(value, kName, 2);
+  camera->rotation_sigma = DegToRad(Positive(value[0], kName));
+  camera->position_sigma = Positive(value[1], kName);
+}
+
 RigCamera ReadCamera(const Json& json, bool* undistorted) {
   RigCamera camera;
   const std::string model = Text(Member(json, "model", "the name of a camera model"), "model");
@@ -156,6 +165,8 @@ RigCamera ReadCamera(const Json& json, bool* undistorted) {
   const std::vector<double> s =
       Numbers(Member(json, "s", "the position x y z of the camera in the body frame"), "s", 3);
   camera.s = {s[0], s[1], s[2]};
+  if (json.contains("camera_sigma")) ReadSigma(json["camera_sigma"], &camera);
+  if (json.contains("time_offset")) camera.time_offset = Number(json["time_offset"], "time_offset");
   return camera;
 }
 

@@ -155,6 +155,29 @@ bool SceneMatchOptions::AreMatchesValid(int num_cameras, std::string* error) con
   } else if (inter_share > 0.0 && num_cameras < 2) {
     *error = "inter_share needs two cameras";
   } else {
+    return IsSeenRigValid(num_cameras, error);
+  }
+  return false;
+}
+
+bool SceneMatchOptions::IsSeenRigValid(int num_cameras, std::string* error) const {
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  if (!(calibration_sigma_deg >= 0.0) || !std::isfinite(calibration_sigma_deg)) {
+    *error = "calibration_sigma_deg must be finite and not negative";
+  } else if (!(calibration_sigma_m >= 0.0) || !std::isfinite(calibration_sigma_m)) {
+    *error = "calibration_sigma_m must be finite and not negative";
+  } else if (state_calibration_sigma && !(calibration_sigma_deg > 0 && calibration_sigma_m > 0)) {
+    *error =
+        "state_calibration_sigma needs a calibration_sigma_deg and a calibration_sigma_m above 0: "
+        "files state positive sigmas only";
+  } else if (!camera_times.empty() && camera_times.size() != static_cast<size_t>(num_cameras)) {
+    *error = "camera_times must have a number for each of the " + std::to_string(num_cameras) +
+             " cameras";
+  } else if (!std::all_of(camera_times.begin(), camera_times.end(), is_finite)) {
+    *error = "camera_times must be finite";
+  } else if (!(interval_s > 0.0) || !std::isfinite(interval_s)) {
+    *error = "interval_s must be positive and finite";
+  } else {
     return true;
   }
   return false;

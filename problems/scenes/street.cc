@@ -8,12 +8,17 @@
 #include <vector>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/enum_names.h"
 #include "rigel/core/rig_centre.h"
 #include "rigel/problems/scenes/moving_car.h"
 #include "rigel/problems/scenes/scene_matches.h"
+#include "rigel/problems/scenes/scene_rig.h"
 
 namespace rigel {
 namespace {
+
+constexpr EnumName<StreetMotion> kMotionNames[] = {
+    {StreetMotion::kCar, "car"}, {StreetMotion::kTurn, "turn"}, {StreetMotion::kStill, "still"}};
 
 // Metres, as street.h states: how far a facade is from the middle of the cameras.
 constexpr double kNearestFacade = 7.0, kFarthestFacade = 13.0;
@@ -41,9 +46,9 @@ double LogUniform(double low, double high, Random* random) {
 
 class StreetGeometry : public SceneGeometry {
  public:
-  StreetGeometry(const StreetOptions& options, const Pose& truth, Random* random)
+  StreetGeometry(const StreetOptions& options, const Rig& rig, const Pose& truth, Random* random)
       : options_(options),
-        rig_(options.rig),
+        rig_(rig),
         truth_(truth),
         right_(options.axes.Right()),
         middle_(right_.dot(RigCentre(options.rig))) {
@@ -60,7 +65,9 @@ class StreetGeometry : public SceneGeometry {
     for (int draw = 0; draw < kMaxStreetDraws; ++draw) {
       match->camera1 = DrawCamera(random);
       const Eigen::Vector3d X = DrawPoint(random, match);
-      if (DrawSecond(inter, truth_ * X, random, match)) return true;
+      const Eigen::Vector3d X2 = truth_ * X;
+      const auto same = [&X2](int /*camera*/) { return X2; };
+      if (DrawSecond(inter, same, random, match)) return true;
     }
     *error = inter ? "no two cameras of the rig share enough of their views for matches between "
                      "cameras (inter_share)"
@@ -82,8 +89,13 @@ class StreetGeometry : public SceneGeometry {
     for (int draw = 0; draw < kMaxDraws; ++draw) {
       const Car& car = cars_[random->Index(kNumCars)];
       const Eigen::Vector3d X = DrawCarPoint(car, random);
-      if (ChooseCamera(-1, X, random, &match->camera1, &match->pixel1) &&
-          DrawSecond(inter, truth_ * (car.motion * X), random, match)) {
+      // Where the point is when a camera fires.
+      const auto at_first = [&](int camera) {
+        return PartOfMotion(car.motion, ShareOfTime(options_, rig_.cameras[camera])) * X;
+      };
+      const auto at_second = [&](int camera) { return truth_ * (car.motion * at_first(camera)); };
+      if (ChooseCamera(-1, at_first, random, &match->camera1, &match->pixel1) &&
+          DrawSecond(inter, at_second, random, match)) {
         return true;
       }
     }
@@ -127,21 +139,25 @@ class StreetGeometry : public SceneGeometry {
     return height - facade * sinks <= kFacadeHeight ? std::min(distance, facade) : distance;
   }
 
-  // The second camera of a match, the same or another one, that sees X, in the body frame of
-  // time 2.
-  bool DrawSecond(bool inter, const Eigen::Vector3d& X, Random* random, Match* match) const {
-    if (inter) return ChooseCamera(match->camera1, X, random, &match->camera2, &match->pixel2);
+  // The second camera of a match, the same or another one, that sees the point. `point_of` is where
+  // that is for each camera, in the body frame of time 2.
+  template <typename PointOf>
+  bool DrawSecond(bool inter, const PointOf& point_of, Random* random, Match* match) const {
+    if (inter) {
+      return ChooseCamera(match->camera1, point_of, random, &match->camera2, &match->pixel2);
+    }
     match->camera2 = match->camera1;
-    return Sees(rig_.cameras[match->camera2], X, &match->pixel2);
+    return Sees(rig_.cameras[match->camera2], point_of(match->camera2), &match->pixel2);
   }
 
-  // One of the cameras but `without` that see X, all of them alike.
-  bool ChooseCamera(int without, const Eigen::Vector3d& X, Random* random, int* camera,
+  // One of the cameras but `without` that see the point, all of them alike.
+  template <typename PointOf>
+  bool ChooseCamera(int without, const PointOf& point_of, Random* random, int* camera,
                     Pixel* pixel) const {
     int num_seen = 0;
     for (int k = 0; k < rig_.size(); ++k) {
       Pixel seen;
-      if (k == without || !Sees(rig_.cameras[k], X, &seen)) continue;
+      if (k == without || !Sees(rig_.cameras[k], point_of(k), &seen)) continue;
       ++num_seen;
       if (random->Index(num_seen) > 0) continue;
       *camera = k;
@@ -160,11 +176,17 @@ class StreetGeometry : public SceneGeometry {
   std::array<Car, kNumCars> cars_;
 };
 
-// Forward on the arc of a rear axle, over a bumpy road.
-Pose DrawCarMotion(const StreetOptions& options, Random* random) {
+Pose DrawMotion(const StreetOptions& options, Random* random) {
+  if (options.motion == StreetMotion::kStill) return Pose();
   const BodyAxes& axes = options.axes;
   const double sign = random->Index(2) == 1 ? 1.0 : -1.0;
   const double yaw = sign * DegToRad(options.rotation_deg);
+  if (options.motion == StreetMotion::kTurn) {
+    Pose turn;
+    turn.R = ExpSO3(yaw * axes.down);
+    return turn;
+  }
+  // Forward on the arc of a rear axle, over a bumpy road.
   const double pitch = DegToRad(kBumpDeg) * random->Normal();
   const double roll = DegToRad(kBumpDeg) * random->Normal();
   Pose f2_from_f1;
@@ -191,6 +213,28 @@ bool StreetOptions::AreNumbersValid(std::string* error) const {
   return false;
 }
 
+bool ParseStreetMotion(std::string_view name, StreetMotion* motion) {
+  return FindValue(kMotionNames, name, motion);
+}
+
+bool StreetOptions::ArePlacesValid(const Rig& seen, std::string* error) const {
+  const Eigen::Vector3d right = axes.Right();
+  const double middle = right.dot(RigCentre(rig));
+  for (int k = 0; k < seen.size(); ++k) {
+    const Eigen::Vector3d& place = seen.cameras[k].s;
+    const std::string name = "camera " + std::to_string(k);
+    if (!(axes.down.dot(place) < ground_m)) {
+      *error = "ground_m must put the ground below all cameras, but " + name + " is not above it";
+    } else if (!(std::abs(right.dot(place) - middle) < kNearestFacade)) {
+      *error = "rig: " + name + " is farther from the middle of the cameras than a facade may be";
+    } else {
+      continue;
+    }
+    return false;
+  }
+  return true;
+}
+
 bool StreetOptions::IsValid(std::string* error) const {
   if (!AreNumbersValid(error)) return false;
   std::string what = "no camera, expected at least one";
@@ -198,30 +242,21 @@ bool StreetOptions::IsValid(std::string* error) const {
     *error = "rig: " + what;
     return false;
   }
-  const Eigen::Vector3d right = axes.Right();
-  const double middle = right.dot(RigCentre(rig));
   for (int k = 0; k < rig.size(); ++k) {
-    const RigCamera& camera = rig.cameras[k];
-    const std::string name = "camera " + std::to_string(k);
-    if (camera.intrinsics.width < 1 || camera.intrinsics.height < 1) {
-      *error = "rig: " + name + " has no image size";
-    } else if (!(axes.down.dot(camera.s) < ground_m)) {
-      *error = "ground_m must put the ground below all cameras, but " + name + " is not above it";
-    } else if (!(std::abs(right.dot(camera.s) - middle) < kNearestFacade)) {
-      *error = "rig: " + name + " is farther from the middle of the cameras than a facade may be";
-    } else {
-      continue;
+    const PinholeCamera& camera = rig.cameras[k].intrinsics;
+    if (camera.width < 1 || camera.height < 1) {
+      *error = "rig: camera " + std::to_string(k) + " has no image size";
+      return false;
     }
-    return false;
   }
-  return AreMatchesValid(rig.size(), error);
+  return ArePlacesValid(rig, error) && AreMatchesValid(rig.size(), error);
 }
 
 bool MakeStreetPair(const StreetOptions& options, int index, FramePair* pair, std::string* error) {
   if (!options.IsValid(error)) return false;
   // The motion has a stream of its own, so that it does not change with the number of matches.
   Random random = Random::Stream(options.seed, 2 * static_cast<uint64_t>(index) + 1);
-  return MakeStreetPair(options, index, DrawCarMotion(options, &random), pair, error);
+  return MakeStreetPair(options, index, DrawMotion(options, &random), pair, error);
 }
 
 bool MakeStreetPair(const StreetOptions& options, int index, const Pose& truth, FramePair* pair,
@@ -237,7 +272,12 @@ bool MakeStreetPair(const StreetOptions& options, int index, const Pose& truth, 
   result.prior.forward = options.axes.forward;
   const Eigen::Vector3d turn = LogSO3(truth.R);
   result.prior.axis = turn.norm() > kNoRotation ? turn.normalized() : options.axes.down;
-  StreetGeometry geometry(options, truth, &random);
+  const Rig rig = RigOfScene(options, index, &result);
+  if (!options.ArePlacesValid(rig, error)) {
+    *error = "with the errors of the calibration and the times of the cameras " + *error;
+    return false;
+  }
+  StreetGeometry geometry(options, rig, truth, &random);
   if (!DrawSceneMatches(options, &geometry, &random, &result, error)) return false;
   *pair = std::move(result);
   return true;

@@ -15,6 +15,7 @@
 #define RIGEL_PROBLEMS_SCENES_STREET_H_
 
 #include <string>
+#include <string_view>
 
 #include "rigel/core/body_axes.h"
 #include "rigel/core/frame_pair.h"
@@ -27,17 +28,28 @@ namespace rigel {
 // Metres: the ground below a rear axle, for rigs that do not say more.
 inline constexpr double kUsualGround = 0.35;
 
+// kCar: forward on the arc of a rear axle, with bumps. kTurn: the yaw alone, about the body's
+// origin, so that t is exactly 0. kStill: no yaw either.
+enum class StreetMotion { kCar, kTurn, kStill };
+
+// "car", "turn", "still". False if there is no such name.
+bool ParseStreetMotion(std::string_view name, StreetMotion* motion);
+
 struct StreetOptions : SceneMatchOptions {
   Rig rig;
   BodyAxes axes;
   double ground_m = kUsualGround;  // how far the ground is below the body's origin
-  double rotation_deg = 1.0;       // yaw, its sign random; pitch and roll are N(0, 0.2 degrees)
-  double distance_m = 1.0;         // |t|, forward along the arc of a rear axle (Ackermann)
+  StreetMotion motion = StreetMotion::kCar;
+  double rotation_deg = 1.0;  // yaw, its sign random; a car's pitch and roll are N(0, 0.2 degrees)
+  double distance_m = 1.0;    // |t| of a car, forward along the arc of a rear axle (Ackermann)
 
   // Those of this struct but the rig.
   bool AreNumbersValid(std::string* error) const;
 
-  // False also if a camera is not above the ground and between the facades.
+  // Whether the cameras that see the street are above the ground and between the facades.
+  bool ArePlacesValid(const Rig& seen, std::string* error) const;
+
+  // False also if that is not so of `rig`.
   bool IsValid(std::string* error) const;
 };
 

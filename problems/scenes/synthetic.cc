@@ -8,14 +8,15 @@
 #include "rigel/core/random.h"
 #include "rigel/problems/scenes/moving_car.h"
 #include "rigel/problems/scenes/scene_matches.h"
+#include "rigel/problems/scenes/scene_rig.h"
 
 namespace rigel {
 namespace {
 
-constexpr EnumName<MotionPattern> kMotionNames[] = {{MotionPattern::kForward, "forward"},
-                                                    {MotionPattern::kRandom, "random"},
-                                                    {MotionPattern::kSideways, "sideways"},
-                                                    {MotionPattern::kPlanar, "planar"}};
+constexpr EnumName<MotionPattern> kMotionNames[] = {
+    {MotionPattern::kForward, "forward"},   {MotionPattern::kRandom, "random"},
+    {MotionPattern::kSideways, "sideways"}, {MotionPattern::kPlanar, "planar"},
+    {MotionPattern::kTurn, "turn"},         {MotionPattern::kStill, "still"}};
 
 constexpr EnumName<RotationAxisPattern> kRotationAxisNames[] = {
     {RotationAxisPattern::kY, "y"}, {RotationAxisPattern::kRandom, "random"}};
@@ -83,10 +84,12 @@ class BoxGeometry : public SceneGeometry {
   bool DrawCarMatch(Random* random, Match* match) override {
     const RigCamera& camera1 = rig_.cameras[match->camera1];
     const RigCamera& camera2 = rig_.cameras[match->camera2];
-    const Pose motion = truth_ * car_.motion;
+    const Pose first = PartOfMotion(car_.motion, ShareOfTime(options_, camera1));
+    const Pose motion =
+        truth_ * car_.motion * PartOfMotion(car_.motion, ShareOfTime(options_, camera2));
     for (int draw = 0; draw < kMaxDraws; ++draw) {
       const Eigen::Vector3d X = DrawCarPoint(car_, random);
-      if (Sees(camera1, X, &match->pixel1) && Sees(camera2, motion * X, &match->pixel2)) {
+      if (Sees(camera1, first * X, &match->pixel1) && Sees(camera2, motion * X, &match->pixel2)) {
         return true;
       }
     }
@@ -165,7 +168,9 @@ bool MakeScenePair(const SceneOptions& options, int index, FramePair* pair, std:
                                    ? Eigen::Vector3d::UnitY()
                                    : random.UnitVector3();
   Pose truth;
-  truth.R = ExpSO3(DegToRad(options.rotation_deg) * axis);
+  if (options.motion != MotionPattern::kStill) {
+    truth.R = ExpSO3(DegToRad(options.rotation_deg) * axis);
+  }
   switch (options.motion) {
     case MotionPattern::kForward:
       truth.t = Eigen::Vector3d::UnitZ();
@@ -181,6 +186,9 @@ bool MakeScenePair(const SceneOptions& options, int index, FramePair* pair, std:
       truth.t = {std::sin(angle), 0.0, std::cos(angle)};
       break;
     }
+    case MotionPattern::kTurn:
+    case MotionPattern::kStill:
+      break;
   }
   if (!MakeScenePair(options, index, truth, pair, error)) return false;
   pair->prior.axis = axis;
@@ -202,7 +210,8 @@ bool MakeScenePair(const SceneOptions& options, int index, const Pose& truth, Fr
   result.prior.axis =
       angle > kNoRotation ? Eigen::Vector3d(LogSO3(truth.R) / angle) : Eigen::Vector3d::UnitY();
 
-  BoxGeometry geometry(options, result.rig, truth);
+  const Rig rig = RigOfScene(options, index, &result);
+  BoxGeometry geometry(options, rig, truth);
   if (!DrawSceneMatches(options, &geometry, &random, &result, error)) return false;
   *pair = result;
   return true;

@@ -28,10 +28,13 @@
 
 namespace rigel {
 
-enum class MotionPattern { kForward, kRandom, kSideways, kPlanar };
+// kTurn: the rotation alone, about the body's origin, so that t is exactly 0. kStill: no rotation
+// either.
+enum class MotionPattern { kForward, kRandom, kSideways, kPlanar, kTurn, kStill };
 enum class RotationAxisPattern { kY, kRandom };
 
-// "forward", "random", "sideways", "planar"; "y", "random". False if there is no such name.
+// "forward", "random", "sideways", "planar", "turn", "still"; "y", "random". False if there is no
+// such name.
 bool ParseMotionPattern(std::string_view name, MotionPattern* pattern);
 bool ParseRotationAxisPattern(std::string_view name, RotationAxisPattern* pattern);
 
@@ -61,9 +64,20 @@ struct SceneMatchOptions {
   double outlier_share = 0.0;  // second point uniform in the image
   double moving_share = 0.0;   // on the car; none of them an outlier
   bool match_scores = false;   // else all 0, unknown
+  // The error of the rig that sees the scene against the one that is stated (scene_rig.h), 1 sigma
+  // per axis, and whether that sigma is stated with the rig.
+  double calibration_sigma_deg = 0.0;
+  double calibration_sigma_m = 0.0;
+  bool state_calibration_sigma = false;
+  // Seconds that each camera fires after the times of the pair; empty: as the rig says.
+  std::vector<double> camera_times;
+  double interval_s = 0.1;  // between the times of a pair, for cameras that fire later
   uint64_t seed = 1;
 
   bool AreMatchesValid(int num_cameras, std::string* error) const;
+
+ private:
+  bool IsSeenRigValid(int num_cameras, std::string* error) const;
 };
 
 struct SceneOptions : SceneMatchOptions {
@@ -72,7 +86,7 @@ struct SceneOptions : SceneMatchOptions {
   bool ring = false;
   double rotation_deg = 1.0;  // about the axis, exactly
   RotationAxisPattern rotation_axis = RotationAxisPattern::kY;
-  MotionPattern motion = MotionPattern::kForward;  // |t| = 1 m; forward +z, sideways +x
+  MotionPattern motion = MotionPattern::kForward;  // if any, |t| = 1 m; forward +z, sideways +x
 
   bool IsValid(std::string* error) const;
 };

@@ -16,15 +16,12 @@ void LinearizeGroups(const GroupedMatches& matches, ResidualKind kind, const Pos
     const RigCamera& c2 = matches.rig().cameras[group.camera2];
     GroupLinearization& linear = (*groups)[g];
     const Eigen::Vector3d Rs = pose.R * c1.s;
-    const Eigen::Matrix3d RQ = pose.R * c1.Q;
     const Eigen::Vector3d b = Rs + pose.t - c2.s;
     Eigen::Matrix3d left = c2.Q.transpose();
-    Eigen::Matrix3d right = RQ;
+    Eigen::Matrix3d right = pose.R * c1.Q;
     if (kind == ResidualKind::kSampson) {
-      left.row(0) /= c2.intrinsics.fx;
-      left.row(1) /= c2.intrinsics.fy;
-      right.col(0) /= c1.intrinsics.fx;
-      right.col(1) /= c1.intrinsics.fy;
+      left = matches.UnprojectionToBody(group.camera2).transpose();
+      right = pose.R * matches.UnprojectionToBody(group.camera1);
     }
     linear.F = left * Skew(b) * right;
     constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
@@ -55,11 +52,11 @@ EpipolarResiduals::EpipolarResiduals(const GroupedMatches& matches, ResidualKind
       const Match& m = matches.matches()[k];
       group_of_[k] = static_cast<int>(g);
       if (kind == ResidualKind::kSampson) {
-        p1_[k] = CentredPixel(c1, m.pixel1);
-        p2_[k] = CentredPixel(c2, m.pixel2);
+        p1_[k] = matches.Point1(k);
+        p2_[k] = matches.Point2(k);
       } else {
-        p1_[k] = c1.Normalize(m.pixel1).normalized();
-        p2_[k] = c2.Normalize(m.pixel2).normalized();
+        p1_[k].p = c1.Normalize(m.pixel1).normalized();
+        p2_[k].p = c2.Normalize(m.pixel2).normalized();
       }
     }
   }
@@ -69,40 +66,47 @@ double EpipolarResiduals::Evaluate(const std::vector<GroupLinearization>& groups
                                    int num_parameters, double* jacobian, int stride) const {
   const int g = group_of_[k];
   const GroupLinearization& linear = groups[g];
-  const Eigen::Vector3d& p1 = p1_[k];
-  const Eigen::Vector3d& p2 = p2_[k];
-  Eigen::Vector3d a = linear.F * p1;
-  Eigen::Vector3d b = linear.F.transpose() * p2;
-  const double C = p2.dot(a);
+  const Eigen::Vector3d& p1 = p1_[k].p;
+  const Eigen::Vector3d& p2 = p2_[k].p;
+  Eigen::Vector3d A = linear.F * p1;
+  Eigen::Vector3d B = linear.F.transpose() * p2;
+  const double C = p2.dot(A);
 
-  // dr/dF = u p1' - v b': for the algebraic residual that is p2 p1'.
+  // dr/dF = u p1' - v B': for the algebraic residual that is p2 p1'.
   double r = C;
   Eigen::Vector3d u = p2;
   Eigen::Vector3d v = Eigen::Vector3d::Zero();
   if (kind_ != ResidualKind::kAlgebraic) {
+    double gradient2;
+    double size = p1.squaredNorm() + p2.squaredNorm();
     if (kind_ == ResidualKind::kSampson) {
-      a.z() = 0.0;
-      b.z() = 0.0;
+      const UnalignedMatrix<3, 2>& J1 = p1_[k].J;
+      const UnalignedMatrix<3, 2>& J2 = p2_[k].J;
+      const Eigen::Vector2d a = J2.transpose() * A;
+      const Eigen::Vector2d b = J1.transpose() * B;
+      gradient2 = a.squaredNorm() + b.squaredNorm();
+      size = 0.5 * (p1.squaredNorm() * J2.squaredNorm() + p2.squaredNorm() * J1.squaredNorm());
+      A = J2 * a;
+      B = J1 * b;
     } else {
-      // Tangent parts: p2.a = p1.b = C.
-      a -= C * p2;
-      b -= C * p1;
+      // Tangent parts: p2.A = p1.B = C.
+      A -= C * p2;
+      B -= C * p1;
+      gradient2 = A.squaredNorm() + B.squaredNorm();
     }
-    const double gradient2 = a.squaredNorm() + b.squaredNorm();
-    if (!(gradient2 > linear.rounding2 * (p1.squaredNorm() + p2.squaredNorm())) ||
-        !std::isfinite(gradient2)) {
+    if (!(gradient2 > linear.rounding2 * size) || !std::isfinite(gradient2)) {
       for (int m = 0; m < num_parameters && jacobian != nullptr; ++m) jacobian[m * stride] = 0.0;
       return 0.0;
     }
-    // d(gradient^2)/2 = a.(dF p1) + b.(dF'p2) for both kinds.
+    // d(gradient^2)/2 = A.(dF p1) + B.(dF'p2) for both kinds.
     const double w = weight_[g] / std::sqrt(gradient2);
     const double s = C / gradient2;
     r = w * C;
-    u = w * (p2 - s * a);
+    u = w * (p2 - s * A);
     v = w * s * p2;
   }
   if (jacobian != nullptr) {
-    const Eigen::Matrix3d dr_dF = u * p1.transpose() - v * b.transpose();
+    const Eigen::Matrix3d dr_dF = u * p1.transpose() - v * B.transpose();
     for (int m = 0; m < num_parameters; ++m) {
       jacobian[m * stride] = dr_dF.cwiseProduct(linear.dF[m]).sum();
     }

@@ -59,8 +59,8 @@ class EpipolarResiduals {
   const GroupedMatches* matches_;
   ResidualKind kind_;
   std::vector<int> group_of_;
-  std::vector<Eigen::Vector3d> p1_, p2_;  // centred pixels, or unit rays in the camera frames
-  std::vector<double> weight_;            // per group; kAngular: the focal length
+  std::vector<RowPoint> p1_, p2_;  // kSampson: those of the matches; else unit rays, J unused
+  std::vector<double> weight_;     // per group; kAngular: the focal length
 };
 
 }  // namespace rigel

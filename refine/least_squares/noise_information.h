@@ -31,15 +31,16 @@ struct SampsonRow {
   UnalignedMatrix<6, 4> by_motion_and_pixels;  // dJ/dp
 };
 
-// Of a match with the centred pixels `p1` and `p2`, third coordinate 1, in the camera pair of
-// `linear` (LinearizeGroups() of kSampson by all six parameters). False at an epipole, where the
-// error is zero by definition and has no derivatives.
-bool DifferentiateSampson(const GroupLinearization& linear, const Eigen::Vector3d& p1,
-                          const Eigen::Vector3d& p2, SampsonRow* row);
+// Of a match with these points, in the camera pair of `linear` (LinearizeGroups() of kSampson by
+// all six parameters). How their J changes with the pixels is left out: for pinholes it does not,
+// and for others it turns dr/dp by less than the pixel noise over the focal length. False at an
+// epipole, where the error is zero by definition and has no derivatives.
+bool DifferentiateSampson(const GroupLinearization& linear, const RowPoint& point1,
+                          const RowPoint& point2, SampsonRow* row);
 
 // The same without dJ/dp, which takes most of the time.
-bool DifferentiateSampsonOnce(const GroupLinearization& linear, const Eigen::Vector3d& p1,
-                              const Eigen::Vector3d& p2, SampsonRow* row);
+bool DifferentiateSampsonOnce(const GroupLinearization& linear, const RowPoint& point1,
+                              const RowPoint& point2, SampsonRow* row);
 
 // D = sum w^2 (dJ/dp)(dJ/dp)' over the matches at `pose`; `weights` (grouped order, 0 leaves a
 // match out) are those of SampsonInformation(), which is D's H once it is divided by the variance
@@ -49,9 +50,9 @@ Matrix6d NoiseInformation(const GroupedMatches& matches, const std::vector<doubl
                           const Pose& pose);
 
 // The same of the matches of one camera pair, from at most `max_matches` of those that have a
-// weight, evenly spaced, in proportion.
-Matrix6d NoiseInformation(const GroupLinearization& linear, const PixelArrays& pixels,
-                          const double* weights, int max_matches);
+// weight (`weights`: of the group's matches), evenly spaced, in proportion.
+Matrix6d NoiseInformation(const GroupLinearization& linear, const GroupedMatches& matches,
+                          const MatchGroup& group, const double* weights, int max_matches);
 
 }  // namespace rigel
 

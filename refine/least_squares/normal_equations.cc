@@ -9,15 +9,15 @@ namespace {
 
 using RowMajor3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-// Returns the group's centred fundamental matrix, and fills its derivatives.
+// Returns the group's F, and fills its derivatives.
 RowMajor3d Differentiate(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
                          FundamentalDerivatives* D) {
   const RigCamera& c1 = matches.rig().cameras[group.camera1];
   const RigCamera& c2 = matches.rig().cameras[group.camera2];
   const Eigen::Vector3d Rs = pose.R * c1.s;
   const Eigen::Vector3d b = Rs + pose.t - c2.s;
-  const Eigen::Matrix3d right = pose.R * matches.Unprojection(group.camera1);
-  const Eigen::Matrix3d& left = matches.Unprojection(group.camera2);
+  const Eigen::Matrix3d right = pose.R * matches.UnprojectionToBody(group.camera1);
+  const Eigen::Matrix3d& left = matches.UnprojectionToBody(group.camera2);
   RowMajor3d F;
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d l = left.col(i);
@@ -39,7 +39,7 @@ RowMajor3d Differentiate(const GroupedMatches& matches, const MatchGroup& group,
   return F;
 }
 
-// Times |p|^2: the rounding error of a squared gradient of zero.
+// Times |p|^2 |J|^2: the rounding error of a squared gradient of zero.
 double Rounding2(const RowMajor3d& F) {
   constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
   return kRounding * kRounding * F.squaredNorm();
@@ -48,12 +48,12 @@ double Rounding2(const RowMajor3d& F) {
 }  // namespace
 
 void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatches& matches,
-                        const MatchGroup& group, const PixelArrays& pixels, const double* weights,
+                        const MatchGroup& group, const RowArrays& rows, const double* weights,
                         const Pose& pose, SampsonParts parts, MotionNormalEquations* sum) {
   FundamentalDerivatives D;
   const RowMajor3d F = Differentiate(matches, group, pose, &D);
   SampsonSums sums;
-  SumSampson(options, pixels, weights, F.data(), Rounding2(F), parts, &sums);
+  SumSampson(options, rows, weights, F.data(), Rounding2(F), parts, &sums);
   sum->cost += sums.cost;
   if (parts == SampsonParts::kAll) {
     AddProjected(sums, D, sum->gradient.data(), sum->curvature.data());
@@ -71,7 +71,7 @@ void Leverages(const GroupedMatches& matches, const MatchGroup& group, const Pos
   const Eigen::Map<const Eigen::Matrix<double, 9, 6, Eigen::RowMajor>, 0, Eigen::OuterStride<8>>
       by_motion(D.d[0]);
   const Eigen::Matrix<double, 9, 9> C = by_motion * covariance * by_motion.transpose();
-  SampsonLeverages(matches.Pixels(group), weights, F.data(), C.data(), Rounding2(F), leverages);
+  SampsonLeverages(matches.Rows(group), weights, F.data(), C.data(), Rounding2(F), leverages);
 }
 
 }  // namespace rigel

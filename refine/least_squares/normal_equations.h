@@ -21,7 +21,7 @@ struct MotionNormalEquations {
 // Adds the result of SumSampson() at `pose` for `pixels` and their weights: all matches of the
 // group or some of them. Which parts are asked for does not change the bits of the cost.
 void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatches& matches,
-                        const MatchGroup& group, const PixelArrays& pixels, const double* weights,
+                        const MatchGroup& group, const RowArrays& rows, const double* weights,
                         const Pose& pose, SampsonParts parts, MotionNormalEquations* sum);
 
 // w^2 J C J' of each match of the group. J is the derivative of its Sampson error (pixels) by that

@@ -31,11 +31,11 @@ struct SampsonKernelOptions {
   double loss_scale = 1.0;  // pixels, > 0
 };
 
-// `F` is the row-major centred fundamental matrix. `weights` has one number for each match; 0
-// leaves it out. The pixels are read up to a multiple of kKernelPadding, where any finite numbers
-// may be. A match whose squared gradient is not above rounding2 (|p1|^2 + |p2|^2) is at an epipole:
-// its residual and derivative are zero. The bits do not depend on the path.
-void SumSampson(const SampsonKernelOptions& options, const PixelArrays& pixels,
+// `F` is the row-major matrix of the camera pair. `weights` has one number for each match; 0
+// leaves it out. The rows are read up to a multiple of kKernelPadding, where any finite numbers
+// may be. A match whose squared gradient is not above rounding2 (|p1|^2 |J2|^2 + |p2|^2 |J1|^2) / 2
+// is at an epipole: its residual and derivative are zero. The bits do not depend on the path.
+void SumSampson(const SampsonKernelOptions& options, const RowArrays& matches,
                 const double* weights, const double F[9], double rounding2, SampsonParts parts,
                 SampsonSums* sums, CpuPath path = BestCpuPath());
 
@@ -50,12 +50,13 @@ void AddProjected(const SampsonSums& sums, const FundamentalDerivatives& D, doub
 
 // w^2 (dr/dF) C (dr/dF)' of each match: the variance of its residual r because of the error of F. C
 // (row-major) is the covariance of F's entries. F, weights, padding and rounding2 as above.
-void SampsonLeverages(const PixelArrays& pixels, const double* weights, const double F[9],
+void SampsonLeverages(const RowArrays& matches, const double* weights, const double F[9],
                       const double C[81], double rounding2, double* leverages,
                       CpuPath path = BestCpuPath());
 
-// g^2 / (g^2 + floor2), g the gradient of a match by its pixels: EpipoleWeights() of uncertainty.h.
-void GradientWeights(const PixelArrays& pixels, const double F[9], double floor2, double* weights,
+// g^2 / (g^2 + noise2 |J2'F J1|^2), g the gradient of a match by its pixels, J2'F J1 how it changes
+// with them: EpipoleWeights() of uncertainty.h.
+void GradientWeights(const RowArrays& matches, const double F[9], double noise2, double* weights,
                      CpuPath path = BestCpuPath());
 
 }  // namespace rigel

@@ -39,9 +39,9 @@ class ParameterEquations {
     parameterization_.Evaluate(parameters.data(), &pose, &basis);
     MotionNormalEquations sum;
     for (size_t g = 0; g < packed_.groups.size(); ++g) {
-      const PixelArrays& pixels = packed_.groups[g];
-      const double* weights = packed_.weights.data() + (pixels.x1 - packed_.x1.data());
-      AddNormalEquations(kernel_, matches_, matches_.groups()[g], pixels, weights, pose,
+      const RowArrays& rows = packed_.groups[g];
+      const double* weights = packed_.weights.data() + (rows.x1 - packed_.x1.data());
+      AddNormalEquations(kernel_, matches_, matches_.groups()[g], rows, weights, pose,
                          derivatives ? SampsonParts::kAll : SampsonParts::kCost, &sum);
     }
     cost = sum.cost;
@@ -97,25 +97,36 @@ ParameterVector DampedStep(const ParameterEquations& at, double mu) {
 }  // namespace
 
 void PackedMatches::Set(const GroupedMatches& matches, const std::vector<double>& all_weights) {
-  for (std::vector<double>* values : {&x1, &y1, &x2, &y2, &weights}) {
-    values->resize(matches.size() + kKernelPadding);
-  }
+  const size_t stride = matches.size() + kKernelPadding;
+  for (std::vector<double>* values : {&x1, &y1, &x2, &y2, &weights}) values->resize(stride);
   groups.clear();
   int n = 0;
   for (const MatchGroup& group : matches.groups()) {
-    const PixelArrays pixels = matches.Pixels(group);
+    const RowArrays rows = matches.Rows(group);
     const double* w = all_weights.data() + group.begin;
     const int begin = n;
     for (int k = 0; k < group.size; ++k) {
-      x1[n] = pixels.x1[k];
-      y1[n] = pixels.y1[k];
-      x2[n] = pixels.x2[k];
-      y2[n] = pixels.y2[k];
+      x1[n] = rows.x1[k];
+      y1[n] = rows.y1[k];
+      x2[n] = rows.x2[k];
+      y2[n] = rows.y2[k];
       weights[n] = w[k];
       n += w[k] != 0.0 ? 1 : 0;
     }
-    groups.push_back(
-        {x1.data() + begin, y1.data() + begin, x2.data() + begin, y2.data() + begin, n - begin});
+    const double* more = nullptr;
+    if (rows.general != nullptr) {
+      general.resize(kGeneralArrays * stride);
+      for (int c = 0; c < kGeneralArrays; ++c) {
+        int i = begin;
+        for (int k = 0; k < group.size; ++k) {
+          general[c * stride + i] = rows.general[c * rows.stride + k];
+          i += w[k] != 0.0 ? 1 : 0;
+        }
+      }
+      more = general.data() + begin;
+    }
+    groups.push_back({x1.data() + begin, y1.data() + begin, x2.data() + begin, y2.data() + begin,
+                      n - begin, more, stride});
   }
 }
 

@@ -22,8 +22,8 @@ struct PackedMatches {
   // `weights`: grouped order.
   void Set(const GroupedMatches& matches, const std::vector<double>& weights);
 
-  std::vector<double> x1, y1, x2, y2, weights;
-  std::vector<PixelArrays> groups;  // into the arrays above
+  std::vector<double> x1, y1, x2, y2, general, weights;
+  std::vector<RowArrays> groups;  // into the arrays above
 };
 
 // Keeps its memory from call to call: no heap allocation after the first.

@@ -26,7 +26,7 @@ Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<dou
                             const Pose& pose) {
   MotionNormalEquations sum;
   for (const MatchGroup& group : matches.groups()) {
-    AddNormalEquations(SampsonKernelOptions(), matches, group, matches.Pixels(group),
+    AddNormalEquations(SampsonKernelOptions(), matches, group, matches.Rows(group),
                        weights.data() + group.begin, pose, SampsonParts::kAll, &sum);
   }
   return sum.curvature;
@@ -34,12 +34,11 @@ Matrix6d SampsonInformation(const GroupedMatches& matches, const std::vector<dou
 
 void EpipoleWeights(const GroupedMatches& matches, const Pose& pose, double noise_px,
                     std::vector<double>* weights) {
+  const double noise2 = kEpipoleSigmas * kEpipoleSigmas * noise_px * noise_px;
   weights->resize(matches.size());
   for (const MatchGroup& group : matches.groups()) {
     const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = matches.Fundamental(group, pose);
-    const double floor2 = kEpipoleSigmas * kEpipoleSigmas * noise_px * noise_px *
-                          F.topLeftCorner<2, 2>().squaredNorm();
-    GradientWeights(matches.Pixels(group), F.data(), floor2, weights->data() + group.begin);
+    GradientWeights(matches.Rows(group), F.data(), noise2, weights->data() + group.begin);
   }
 }
 

@@ -13,14 +13,13 @@ namespace {
 // kMaxPartners different partners are in one image, those count for nothing.
 class PartnerJudge {
  public:
-  PartnerJudge(const std::vector<Match>& matches, bool at_time2)
-      : matches_(matches), at_time2_(at_time2) {}
+  PartnerJudge(const ImagePoints& points, bool at_time2) : points_(points), at_time2_(at_time2) {}
 
   void Judge(const std::vector<int>& rows, std::vector<int>* first_of) {
     partners_.clear();
     bool too_many = false;
     for (const int row : rows) {
-      const ImagePoint point = ImagePointOf(matches_[row], !at_time2_);
+      const ImagePoint point = points_.At(row, !at_time2_);
       const auto same = std::find_if(partners_.begin(), partners_.end(),
                                      [&](const Partner& other) { return other.point == point; });
       if (same != partners_.end()) {
@@ -32,7 +31,7 @@ class PartnerJudge {
     }
     if (!too_many) return;
     for (const int row : rows) {
-      if (NumIn(ImagePointOf(matches_[row], !at_time2_).camera) > kMaxPartners) {
+      if (NumIn(points_.At(row, !at_time2_).camera) > kMaxPartners) {
         (*first_of)[row] = -1;
       }
     }
@@ -48,20 +47,20 @@ class PartnerJudge {
                          [camera](const Partner& p) { return p.point.camera == camera; });
   }
 
-  const std::vector<Match>& matches_;
+  const ImagePoints& points_;
   const bool at_time2_;
   std::vector<Partner> partners_;  // the different ones
 };
 
 }  // namespace
 
-std::vector<size_t> DistinctMatches(const std::vector<Match>& matches, std::vector<int>* first_of) {
-  first_of->resize(matches.size());
+std::vector<size_t> DistinctMatches(const ImagePoints& points, std::vector<int>* first_of) {
+  first_of->resize(points.size());
   std::iota(first_of->begin(), first_of->end(), 0);
   std::vector<int> rows_of_point;
   for (const bool at_time2 : {false, true}) {
-    const SamePoints same(matches, at_time2);
-    PartnerJudge judge(matches, at_time2);
+    const SamePoints same(points, at_time2);
+    PartnerJudge judge(points, at_time2);
     for (const int first : same.firsts()) {
       rows_of_point.clear();
       for (int k = first; k >= 0; k = same.Next(k)) rows_of_point.push_back(k);
@@ -69,17 +68,23 @@ std::vector<size_t> DistinctMatches(const std::vector<Match>& matches, std::vect
     }
   }
   std::vector<size_t> rows;
-  rows.reserve(matches.size());
-  for (size_t k = 0; k < matches.size(); ++k) {
-    if ((*first_of)[k] == static_cast<int>(k)) rows.push_back(k);
+  rows.reserve(points.size());
+  for (int k = 0; k < points.size(); ++k) {
+    if ((*first_of)[k] == k) rows.push_back(k);
   }
   return rows;
 }
 
-DistinctSet KeepDistinct(const std::vector<Match>& matches) {
+DistinctSet KeepDistinct(const std::vector<Match>& matches, const MatchColumns& columns) {
   DistinctSet distinct;
   std::vector<int> first_of;
-  const std::vector<size_t> rows = DistinctMatches(matches, &first_of);
+  const std::vector<size_t> rows =
+      DistinctMatches(ImagePoints(matches, columns.landmark), &first_of);
+  MatchColumns used;
+  used.landmark = columns.landmark;
+  used.sigma1 = columns.sigma1;
+  used.sigma2 = columns.sigma2;
+  distinct.columns = used.Subset(rows);
   distinct.position.assign(matches.size(), -1);
   distinct.matches.reserve(rows.size());
   for (const size_t row : rows) {
@@ -103,7 +108,7 @@ std::vector<char> DistinctSet::OfAll(const std::vector<char>& of_distinct) const
 std::vector<SharedPixel> FindSharedPixels(const GroupedMatches& matches) {
   std::vector<SharedPixel> shared;
   for (const bool at_time2 : {false, true}) {
-    const SamePoints same(matches.matches(), at_time2);
+    const SamePoints same(ImagePoints(matches.matches(), matches.landmarks()), at_time2);
     for (const int first : same.firsts()) {
       for (int j = first; j >= 0; j = same.Next(j)) {
         int linked = 0;

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "rigel/core/grouped_matches.h"
+#include "rigel/core/linked_matches.h"
 #include "rigel/core/match.h"
+#include "rigel/core/match_columns.h"
 
 namespace rigel {
 
@@ -20,17 +22,19 @@ inline constexpr int kMaxPartners = 3;
 // The matches that count, in order: without exact repeats of an earlier one, and without those of a
 // point that has more than kMaxPartners partners in one image. `first_of[k]` is the position of the
 // first match that is the same as match k, -1 if k does not count for its partners.
-std::vector<size_t> DistinctMatches(const std::vector<Match>& matches, std::vector<int>* first_of);
+std::vector<size_t> DistinctMatches(const ImagePoints& points, std::vector<int>* first_of);
 
 // Those matches, and where each of all matches is among them.
 struct DistinctSet {
   std::vector<Match> matches;
+  MatchColumns columns;       // landmark, sigma1, sigma2 of these
   std::vector<int> position;  // of each of all matches, a repeat that of its first; -1: none
 
   // Flags of the distinct matches as flags of all: 0 for those that do not count.
   std::vector<char> OfAll(const std::vector<char>& of_distinct) const;
 };
-DistinctSet KeepDistinct(const std::vector<Match>& matches);
+// Points are the same by `columns.landmark` where that is known, else by their pixels.
+DistinctSet KeepDistinct(const std::vector<Match>& matches, const MatchColumns& columns = {});
 
 // Two matches (grouped order, first < second) with the same point at time 1 or at time 2.
 struct SharedPixel {

@@ -22,7 +22,7 @@ bool Enough(const DepthCounts& counts, int looked_at) {
 void CountGroup(const GroupedMatches& matches, const MatchGroup& group, double threshold_px,
                 const Pose& pose, DepthCounts* counts) {
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = matches.Fundamental(group, pose);
-  CountDepths(matches.Pixels(group), matches.Directions(group), F.data(),
+  CountDepths(matches.Rows(group), matches.Directions(group), F.data(),
               matches.MotionOf(group, pose, threshold_px), threshold_px * threshold_px, counts);
 }
 

@@ -122,7 +122,7 @@ void BM_TruncatedSum(benchmark::State& state) {
   const OneGroup g(state);
   int inliers = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(TruncatedSampsonSum(g.matches.Pixels(g.group), g.F.data(), 2.25, 1e300,
+    benchmark::DoNotOptimize(TruncatedSampsonSum(g.matches.Rows(g.group), g.F.data(), 2.25, 1e300,
                                                  0.0, &inliers, g.path));
   }
   state.SetItemsProcessed(state.iterations() * OneGroup::kSize);
@@ -134,7 +134,7 @@ void BM_TruncatedSumInFront(benchmark::State& state) {
   int inliers = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        TruncatedSampsonSumInFront(g.matches.Pixels(g.group), g.matches.Directions(g.group),
+        TruncatedSampsonSumInFront(g.matches.Rows(g.group), g.matches.Directions(g.group),
                                    g.F.data(), g.motion, 2.25, 1e300, 0.0, &inliers, g.path));
   }
   state.SetItemsProcessed(state.iterations() * OneGroup::kSize);
@@ -145,7 +145,7 @@ void BM_SquaredErrors(benchmark::State& state) {
   const OneGroup g(state);
   std::vector<double> errors(OneGroup::kSize);
   for (auto _ : state) {
-    SquaredSampsonErrors(g.matches.Pixels(g.group), g.F.data(), errors.data(), g.path);
+    SquaredSampsonErrors(g.matches.Rows(g.group), g.F.data(), errors.data(), g.path);
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations() * OneGroup::kSize);
@@ -157,7 +157,7 @@ void BM_SelectInFront(benchmark::State& state) {
   std::vector<double> errors(OneGroup::kSize);
   std::vector<char> inliers(OneGroup::kSize);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(SelectInFront(g.matches.Pixels(g.group), g.matches.Directions(g.group),
+    benchmark::DoNotOptimize(SelectInFront(g.matches.Rows(g.group), g.matches.Directions(g.group),
                                            g.F.data(), g.motion, 2.25, errors.data(),
                                            inliers.data(), g.path));
     benchmark::ClobberMemory();

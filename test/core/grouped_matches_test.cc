@@ -275,7 +275,7 @@ TEST(GroupedMatches, FundamentalMatrixOfAGroup) {
   const GroupedMatches grouped(pair.rig, pair.matches);
   for (const MatchGroup& group : grouped.groups()) {
     const Eigen::Matrix3d F = grouped.Fundamental(group, *pair.truth);
-    const PixelArrays pixels = grouped.Pixels(group);
+    const RowArrays pixels = grouped.Rows(group);
     ASSERT_EQ(pixels.size, group.size);
     for (int k = 0; k < group.size; ++k) {
       const Eigen::Vector3d p1(pixels.x1[k], pixels.y1[k], 1.0);

@@ -31,15 +31,25 @@ TEST(LinkedMatches, SetsOfSharedPixels) {
       MatchOf(1, 9, 1, 4),  // 5
       MatchOf(0, 4, 1, 5),  // 6
   };
-  EXPECT_THAT(LinkedMatches(matches, std::vector<char>(7, 1)),
+  const std::vector<int64_t> unknown;
+  const ImagePoints points(matches, unknown);
+  EXPECT_THAT(LinkedMatches(points, std::vector<char>(7, 1)),
               ElementsAre(ElementsAre(0, 3, 5), ElementsAre(1), ElementsAre(2), ElementsAre(4, 6)));
-  EXPECT_TRUE(SharePixel1(matches[0], matches[3]));
-  EXPECT_FALSE(SharePixel2(matches[0], matches[3]));
-  EXPECT_TRUE(SharePixel2(matches[3], matches[5]));
+  EXPECT_TRUE(points.Share(0, 3, false));
+  EXPECT_FALSE(points.Share(0, 3, true));
+  EXPECT_TRUE(points.Share(3, 5, true));
   // Matches that are left out link none.
-  EXPECT_THAT(LinkedMatches(matches, {1, 0, 0, 0, 1, 1, 1}),
+  EXPECT_THAT(LinkedMatches(points, {1, 0, 0, 0, 1, 1, 1}),
               ElementsAre(ElementsAre(0), ElementsAre(4, 6), ElementsAre(5)));
-  EXPECT_THAT(LinkedMatches({}, {}), IsEmpty());
+  EXPECT_THAT(LinkedMatches(ImagePoints({}, unknown), {}), IsEmpty());
+  // Landmarks decide where they are known: 1 and 2 see one point, but with different cameras.
+  const std::vector<int64_t> landmark = {1, 2, 2, 4, 5, 6, 7};
+  EXPECT_THAT(LinkedMatches(ImagePoints(matches, landmark), std::vector<char>(7, 1)),
+              ElementsAre(ElementsAre(0), ElementsAre(1), ElementsAre(2), ElementsAre(3),
+                          ElementsAre(4), ElementsAre(5), ElementsAre(6)));
+  EXPECT_THAT(LinkedMatches(ImagePoints(matches, {1, 1, 2, 3, 4, 5, 6}), std::vector<char>(7, 1)),
+              ElementsAre(ElementsAre(0, 1), ElementsAre(2), ElementsAre(3), ElementsAre(4),
+                          ElementsAre(5), ElementsAre(6)));
 }
 
 TEST(DisjointSets, TheLeastOfASetStandsForIt) {

@@ -48,6 +48,16 @@ class Problem {
     }
     const Eigen::Vector3d inv_f(1 / kFocal, 1 / kFocal, 1);
     F = inv_f.asDiagonal() * Skew(pose.t) * pose.R * inv_f.asDiagonal();
+    if (seed % 2 == 0) return;
+    // Rows of any cameras: near those of pinholes, so that the errors are of their size.
+    stride_ = data_[0].size();
+    general_.resize(kGeneralArrays * stride_);
+    for (int k = 0; k < size; ++k) {
+      for (int c = 0; c < kGeneralArrays; ++c) {
+        const bool is_one = c < 2 || (c - 2) % 6 == 0 || (c - 2) % 6 == 3;
+        general_[c * stride_ + k] = (is_one ? 1.0 : 0.0) + 0.05 * random.Normal();
+      }
+    }
   }
 
   void Set(int k, const RayPair& rays) {
@@ -59,8 +69,10 @@ class Problem {
     rays_[k] = rays;
   }
 
-  PixelArrays pixels() const {
-    return {data_[0].data(), data_[1].data(), data_[2].data(), data_[3].data(), size_};
+  RowArrays pixels() const {
+    return {data_[0].data(), data_[1].data(), data_[2].data(),
+            data_[3].data(), size_,           general_.empty() ? nullptr : general_.data(),
+            stride_};
   }
   RayArrays rays() const {
     return {data_[4].data(), data_[5].data(), data_[6].data(),
@@ -75,7 +87,19 @@ class Problem {
   }
 
   double Error(int k) const {
-    return SampsonError(F, {data_[0][k], data_[1][k], 1}, {data_[2][k], data_[3][k], 1});
+    if (general_.empty()) {
+      return SampsonError(F, Eigen::Vector3d(data_[0][k], data_[1][k], 1),
+                          Eigen::Vector3d(data_[2][k], data_[3][k], 1));
+    }
+    RowPoint points[2];
+    for (int side = 0; side < 2; ++side) {
+      const double* of_k = general_.data() + k;
+      points[side].p = {data_[2 * side][k], data_[2 * side + 1][k], of_k[side * stride_]};
+      for (int i = 0; i < 6; ++i) {
+        points[side].J(i / 2, i % 2) = of_k[(2 + 6 * side + i) * stride_];
+      }
+    }
+    return SampsonError(F, points[0], points[1]);
   }
   // In front of one camera is then behind the other.
   void TurnSecondRay(int k) {
@@ -97,6 +121,8 @@ class Problem {
  private:
   int size_;
   std::vector<double> data_[10];
+  std::vector<double> general_;  // as RowArrays has it; empty: pinholes
+  size_t stride_ = 0;
   std::vector<RayPair> rays_;
 };
 
@@ -283,7 +309,7 @@ std::vector<bool> LeftOut(const Problem& p, double min_sin2, CpuPath path) {
   fits.F(2, 0) = 1.0;  // x1 = 0
   const int size = p.pixels().size;
   std::vector<double> zeros(size + kKernelPadding, 0.0), errors(size);
-  const PixelArrays pixels = {zeros.data(), zeros.data(), zeros.data(), zeros.data(), size};
+  const RowArrays pixels = {zeros.data(), zeros.data(), zeros.data(), zeros.data(), size};
   std::vector<char> inliers(size);
   SelectInFront(pixels, p.rays(), fits.F.data(), p.motion(min_sin2), kT2, errors.data(),
                 inliers.data(), path);

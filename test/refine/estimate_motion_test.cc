@@ -11,6 +11,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
 #include "rigel/core/grouped_matches.h"
 #include "rigel/core/parallel.h"
@@ -322,6 +323,51 @@ TEST(EstimateMotion, TheBailOutTestKeepsTheWinners) {
     std::printf("[ measured ] the same winner in %d of %d\n", same, kPairs);
     EXPECT_GE(same, 98);
   }
+}
+
+// Half of the matches have four times the noise of the others, at one of the times or at both. With
+// the columns that say so the motion is as good as their information allows, and its sigma true.
+TEST(EstimateMotion, SigmasOfPixelsAreWeights) {
+  constexpr int kPairs = 200;
+  double squares[2] = {0.0, 0.0}, nees = 0.0, expected = 0.0;
+  for (int index = 0; index < kPairs; ++index) {
+    SceneOptions scene;
+    scene.inter_share = 0.5;
+    scene.num_matches = 300;
+    scene.noise_px = 0.0;
+    FramePair pair = ScenePair(scene, index);
+    Random random = Random::Stream(8, index);
+    MatchColumns columns;
+    for (size_t k = 0; k < pair.matches.size(); ++k) {
+      Match& m = pair.matches[k];
+      columns.sigma1.push_back(k % 4 == 0 ? 1.2 : 0.3);
+      columns.sigma2.push_back(k % 4 < 2 ? 1.2 : 0.3);
+      m.pixel1 += columns.sigma1[k] * random.NormalVector3().head<2>();
+      m.pixel2 += columns.sigma2[k] * random.NormalVector3().head<2>();
+    }
+    for (const bool stated : {false, true}) {
+      pair.columns = stated ? columns : MatchColumns();
+      const MotionEstimate e = EstimateMotion(EstimateOptions(), pair);
+      ASSERT_EQ(e.status, EstimateStatus::kSuccess);
+      const double angle = RotationError(pair.truth->R, e.pose.R);
+      squares[stated ? 1 : 0] += angle * angle / kPairs;
+      if (!stated) continue;
+      ASSERT_TRUE(e.refine.covariance.has_value());
+      const Vector6d d = Difference(*pair.truth, e.pose);
+      nees += d.dot(e.refine.covariance->ldlt().solve(d)) / 6.0 / kPairs;
+      expected += e.refine.rotation_sigma * e.refine.rotation_sigma / kPairs;
+    }
+  }
+  const double gain = std::sqrt(squares[0] / squares[1]);
+  const double ratio = std::sqrt(squares[1] / expected);
+  std::printf(
+      "[ measured ] rotation error without the sigmas %.2f times as large, NEES %.2f, "
+      "error over stated sigma %.2f\n",
+      gain, nees, ratio);
+  EXPECT_GT(gain, 1.1);
+  EXPECT_GT(nees, 0.8);
+  EXPECT_LT(nees, 1.25);
+  EXPECT_NEAR(ratio, 1.0, 0.12);
 }
 
 TEST(EstimateMotion, ConcurrentCallsGiveTheSameBits) {

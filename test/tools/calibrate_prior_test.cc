@@ -10,6 +10,7 @@
 #include "rigel/core/pose.h"
 #include "rigel/core/rig_centre.h"
 #include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/match_file_list.h"
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {

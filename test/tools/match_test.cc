@@ -1,78 +1,18 @@
-// rigel_match: files that are right, runs that can be interrupted, errors that are told.
+// rigel_match: files that are right.
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 #include "rigel/core/metrics.h"
-#include "rigel/problems/io/match_file.h"
-#include "rigel/test/problems/images/plane_scene.h"
-#include "rigel/test/tools/tools_test.h"
+#include "rigel/test/tools/match_runs.h"
 
 namespace rigel {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-constexpr int kFrames = 4;
-
-// Drawn once, for all tests; who changes it works on a copy.
-const std::string& Data() {
-  static const std::string* const data = [] {
-    auto* const path = new std::string(testing::TempDir() + "/rigel_match_XXXXXX");
-    EXPECT_NE(mkdtemp(path->data()), nullptr);
-    const PlaneScene scene;
-    WriteEurocScene(scene, kFrames, *path + "/plane");
-    WriteKittiScene(scene, kFrames, "06", *path + "/kitti");
-    std::atexit([] { fs::remove_all(Data()); });
-    return path;
-  }();
-  return *data;
-}
-
-class MatchTest : public ToolsTest {
- protected:
-  // The names of the files of a directory.
-  std::vector<std::string> Names(const std::string& directory) {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(directory)) {
-      names.push_back(entry.path().filename().string());
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-
-  // All match files of a directory, one after the other, with their names.
-  std::string Bytes(const std::string& directory) {
-    std::string bytes;
-    for (const std::string& name : Names(directory)) {
-      bytes += name + "\n" + ReadText(directory + "/" + name);
-    }
-    return bytes;
-  }
-
-  FramePair Read(const std::string& path) {
-    FramePair pair;
-    std::string error;
-    EXPECT_TRUE(ReadMatchFile(path, &pair, &error)) << error;
-    return pair;
-  }
-
-  Outcome Euroc(const std::string& output, const Args& args = {}) {
-    return RunTool("match", Args{"--euroc_root=" + Data() + "/plane", "--max_features=300",
-                                 "--output=" + Path(output)} +
-                                args);
-  }
-  Outcome Kitti(const std::string& output, const Args& args = {}) {
-    return RunTool("match", Args{"--kitti_root=" + Data() + "/kitti", "--sequence=06",
-                                 "--max_features=300", "--output=" + Path(output)} +
-                                args);
-  }
-};
 
 TEST_F(MatchTest, EurocFilesHoldWhatTheDataSetKnows) {
   const Outcome run = Euroc("out");
@@ -172,59 +112,6 @@ TEST_F(MatchTest, WithoutTimesAndPosesThereAreNoSuchLines) {
   EXPECT_THAT(Names(Path("out")), ElementsAre("000000-000001.matches", "rigel_match.settings"));
 }
 
-TEST_F(MatchTest, ResumeWithAnotherCalibrationIsRefusedAndWithAnotherPlaceIsNot) {
-  fs::copy(Data() + "/kitti", Path("kitti"), fs::copy_options::recursive);
-  ASSERT_EXIT_CODE(Kitti("out", {"--last=1"}), 0);
-  const std::string root = "--kitti_root=" + Path("kitti");
-  EXPECT_EXIT_CODE(Kitti("out", {"--last=2", "--resume", root}), 0);
-  const std::string path = Path("kitti/sequences/06/calib.txt");
-  std::string calibration = ReadText(path);
-  const size_t focal = calibration.find("P0: ") + 4;
-  calibration.replace(focal, calibration.find(' ', focal) - focal, "123.5");
-  WriteText(path, calibration);
-  const Outcome run = Kitti("out", {"--last=2", "--resume", root});
-  EXPECT_EXIT_CODE(run, 1);
-  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("this run has 'camera 0 focal 123.5 ")));
-}
-
-TEST_F(MatchTest, ManyMissingImagesAreFewLines) {
-  fs::copy(Data() + "/kitti", Path("kitti"), fs::copy_options::recursive);
-  for (const char* camera : {"image_0", "image_1"}) {
-    for (int k = 0; k < kFrames; ++k) {
-      // The last of one camera stays: frames count to the highest image.
-      if (k + 1 == kFrames && camera == std::string("image_1")) continue;
-      fs::remove(Path(std::string("kitti/sequences/06/") + camera + "/00000" + std::to_string(k) +
-                      ".png"));
-    }
-  }
-  const Outcome run = Kitti("out", {"--kitti_root=" + Path("kitti")});
-  EXPECT_EXIT_CODE(run, 1);
-  const auto absent = HasSubstr(".png: cannot be opened: No such file or directory");
-  EXPECT_THAT(
-      Lines(run.err),
-      ElementsAre("frame 0, the first of the range, has no images",
-                  "2 pairs of the range have no image at all", absent, absent, absent,
-                  HasSubstr("wrote 0 match files to " + Path("out") + "; 3 could not be made")));
-  // Numbers that are left out, a million of them: their pairs are not even gone through.
-  for (const char* camera : {"image_0", "image_1"}) {
-    const std::string from = Data() + "/kitti/sequences/06/" + camera;
-    const std::string to = Path(std::string("kitti/sequences/06/") + camera);
-    fs::copy(from + "/000000.png", to + "/000000.png");
-    fs::copy(from + "/000001.png", to + "/000001.png");
-    fs::copy(from + "/000003.png", to + "/1000000.png");
-  }
-  const Outcome gap = Kitti("gap", {"--kitti_root=" + Path("kitti")});
-  EXPECT_EXIT_CODE(gap, 1);
-  EXPECT_THAT(Lines(gap.err),
-              ElementsAre(HasSubstr("times.txt: 4 lines for 1000001 frames"),
-                          HasSubstr("06.txt: 4 lines for 1000001 frames"),
-                          "999995 pairs of the range have no image at all", absent, absent, absent,
-                          absent, absent, "and 2 more images that cannot be opened",
-                          HasSubstr("wrote 1 match files to " + Path("gap") +
-                                    "; 999999 could not be made")));
-  EXPECT_TRUE(fs::exists(Path("gap/000000-000001.matches")));
-}
-
 TEST_F(MatchTest, ThreadsAndRepetitionGiveTheSameBytes) {
   for (const char* features : {"--features=sift", "--features=orb"}) {
     const std::string name = std::string(features).substr(11);
@@ -235,97 +122,6 @@ TEST_F(MatchTest, ThreadsAndRepetitionGiveTheSameBytes) {
     EXPECT_EQ(Bytes(Path(name + "1")), Bytes(Path(name + "7")));
   }
   EXPECT_NE(Bytes(Path("sift1")), Bytes(Path("orb1")));
-}
-
-TEST_F(MatchTest, ResumeKeepsWhatIsCompleteAndDoesTheRest) {
-  ASSERT_EXIT_CODE(Euroc("whole"), 0);
-  const std::string whole = Bytes(Path("whole"));
-  // As a run leaves it that was killed: one file missing, one temporary left. One that is cut off,
-  // which no run leaves, is made again as well.
-  ASSERT_EXIT_CODE(Euroc("out"), 0);
-  fs::remove(Path("out/000001-000002.matches"));
-  WriteText(Path("out/000001-000002.matches.rigel-tmp0"), "format rigma");
-  WriteText(Path("out/000002-000003.matches"), "format rigmatch 1\n");
-  const auto before = fs::last_write_time(Path("out/000000-000001.matches"));
-
-  const Outcome refused = Euroc("out");
-  EXPECT_EXIT_CODE(refused, 1);
-  EXPECT_THAT(Lines(refused.err),
-              ElementsAre(AllOf(HasSubstr("holds 000000-000001.matches and 1 more"),
-                                HasSubstr("--resume continues that run"))));
-
-  const Outcome run = Euroc("out", {"--resume"});
-  ASSERT_EXIT_CODE(run, 0);
-  EXPECT_THAT(Lines(run.err), ElementsAre("wrote 2 match files to " + Path("out") + ", kept 1"));
-  EXPECT_EQ(Bytes(Path("out")), whole);
-  EXPECT_EQ(fs::last_write_time(Path("out/000000-000001.matches")), before);
-
-  const Outcome nothing = Euroc("out", {"--resume"});
-  EXPECT_EXIT_CODE(nothing, 0);
-  EXPECT_THAT(nothing.err, HasSubstr("wrote 0 match files to " + Path("out") + ", kept 3"));
-}
-
-TEST_F(MatchTest, ResumeOfOtherSettingsOrOfOtherFilesIsRefused) {
-  ASSERT_EXIT_CODE(Euroc("out", {"--last=1"}), 0);
-  const std::string before = Bytes(Path("out"));
-  for (const char* flag : {"--features=orb", "--ratio=0.7", "--max_features=200"}) {
-    const Outcome run = Euroc("out", {"--resume", flag});
-    EXPECT_EXIT_CODE(run, 1);
-    EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("the match files beside it were made with")));
-  }
-  const Outcome others = Euroc("out", {"--resume", "--first=1"});
-  EXPECT_EXIT_CODE(others, 1);
-  EXPECT_THAT(Lines(others.err),
-              ElementsAre(HasSubstr("holds 000000-000001.matches, which would")));
-  EXPECT_EQ(Bytes(Path("out")), before);
-  // A longer range is more of the same.
-  const Outcome longer = Euroc("out", {"--resume", "--last=2"});
-  EXPECT_EXIT_CODE(longer, 0);
-  EXPECT_THAT(longer.err, HasSubstr("wrote 1 match files to " + Path("out") + ", kept 1"));
-
-  fs::remove(Path("out/rigel_match.settings"));
-  const Outcome unknown = Euroc("out", {"--resume", "--last=2"});
-  EXPECT_EXIT_CODE(unknown, 1);
-  EXPECT_THAT(Lines(unknown.err), ElementsAre(HasSubstr("rigel_match.settings: cannot be opened")));
-}
-
-TEST_F(MatchTest, MissingAndBrokenImagesCostTheirPairsOnly) {
-  fs::copy(Data() + "/kitti", Path("kitti"), fs::copy_options::recursive);
-  const std::string root = "--kitti_root=" + Path("kitti");
-  const std::string image0 = Path("kitti/sequences/06/image_0/000000.png");
-  fs::remove(image0);
-  const Outcome missing = Kitti("out", {root});
-  EXPECT_EXIT_CODE(missing, 1);
-  EXPECT_THAT(Lines(missing.err),
-              ElementsAre(image0 + ": cannot be opened: No such file or directory",
-                          "wrote 2 match files to " + Path("out") + "; 1 could not be made"));
-  EXPECT_THAT(Names(Path("out")), ElementsAre("000001-000002.matches", "000002-000003.matches",
-                                              "rigel_match.settings"));
-
-  // Said once, though two pairs need it.
-  WriteText(Path("kitti/sequences/06/image_1/000002.png"), "not an image");
-  const Outcome broken = Kitti("broken", {root, "--threads=2"});
-  EXPECT_EXIT_CODE(broken, 1);
-  EXPECT_THAT(Lines(broken.err),
-              ElementsAre(HasSubstr("image_0/000000.png: cannot be opened"),
-                          HasSubstr("image_1/000002.png: not an image that can be decoded"),
-                          HasSubstr("wrote 0 match files")));
-
-  fs::copy(Data() + "/kitti/sequences/06/image_0/000000.png", image0);
-  const Outcome resumed = Kitti("out", {root, "--resume"});
-  EXPECT_EXIT_CODE(resumed, 0);
-  EXPECT_THAT(resumed.err, HasSubstr("wrote 1 match files to " + Path("out") + ", kept 2"));
-}
-
-TEST_F(MatchTest, ImagesOfDifferentSizesAreTold) {
-  fs::copy(Data() + "/kitti", Path("kitti"), fs::copy_options::recursive);
-  const std::string image = Path("kitti/sequences/06/image_1/000001.png");
-  ImageCamera camera = PlaneScene().cameras()[0];
-  camera.camera.intrinsics.width = 400;
-  WriteImage(image, PlaneScene().Render(camera, PlaneScene::WorldFromBody(1)));
-  const Outcome run = Kitti("out", {"--kitti_root=" + Path("kitti"), "--last=1"});
-  EXPECT_EXIT_CODE(run, 1);
-  EXPECT_THAT(run.err, HasSubstr("not written: the images of camera 1 differ in size"));
 }
 
 TEST_F(MatchTest, NothingMatchedIsAFileToo) {
@@ -339,35 +135,6 @@ TEST_F(MatchTest, NothingMatchedIsAFileToo) {
   ASSERT_EXIT_CODE(Euroc("out", {"--euroc_root=" + Path("plane")}), 0);
   EXPECT_THAT(Read(Path("out/000000-000001.matches")).matches, IsEmpty());
   EXPECT_EXIT_CODE(Euroc("out", {"--euroc_root=" + Path("plane"), "--resume"}), 0);
-}
-
-TEST_F(MatchTest, RangesBeyondTheSequenceAreToldBeforeAnythingIsDone) {
-  for (const char* flag : {"--last=4", "--first=4", "--first=1000000"}) {
-    const Outcome run = Kitti("out", {flag});
-    EXPECT_EXIT_CODE(run, 1);
-    EXPECT_THAT(Lines(run.err),
-                ElementsAre(HasSubstr("is not there: sequence 06 has 4 frames, 0 to 3")));
-  }
-  const Outcome one = Kitti("out", {"--first=3"});
-  EXPECT_EXIT_CODE(one, 1);
-  EXPECT_THAT(one.err, HasSubstr("no pair of frames in the range: sequence 06 has 4 frames"));
-  EXPECT_FALSE(fs::exists(Path("out")));
-}
-
-TEST_F(MatchTest, WhatIsMissingOrBrokenIsOneLine) {
-  EXPECT_THAT(Kitti("out", {"--sequence=07"}).err, HasSubstr("sequences/07: no such directory"));
-  const Outcome nowhere = Euroc("out", {"--euroc_root=" + Path("none")});
-  EXPECT_EXIT_CODE(nowhere, 1);
-  EXPECT_THAT(Lines(nowhere.err), ElementsAre(HasSubstr("expected EuRoC's folder mav0")));
-  fs::copy(Data() + "/plane", Path("plane"), fs::copy_options::recursive);
-  WriteText(Path("plane/mav0/cam1/sensor.yaml"), "T_BS: [\n");
-  const Outcome yaml = Euroc("out", {"--euroc_root=" + Path("plane")});
-  EXPECT_EXIT_CODE(yaml, 1);
-  EXPECT_THAT(Lines(yaml.err), ElementsAre(HasSubstr("cam1/sensor.yaml:")));
-  WriteText(Path("file"), "in the way");
-  const Outcome file = Euroc("file");
-  EXPECT_EXIT_CODE(file, 1);
-  EXPECT_THAT(Lines(file.err), ElementsAre(HasSubstr(Path("file") + ": cannot be")));
 }
 
 TEST_F(MatchTest, ImagesWithoutPartnerAreLeftOutAndSaidToBe) {
@@ -406,46 +173,6 @@ TEST_F(MatchTest, StampsOfARecordingDifferByMicroseconds) {
   EXPECT_EXIT_CODE(exact, 1);
   EXPECT_THAT(exact.err, HasSubstr("the nearest are 0.031 ms apart"));
   EXPECT_EXIT_CODE(Euroc("wrong", {root, "--sync_tolerance_ms=-1"}), 2);
-}
-
-TEST_F(MatchTest, ABlankLineInTimesIsRefused) {
-  fs::copy(Data() + "/kitti", Path("kitti"), fs::copy_options::recursive);
-  WriteText(Path("kitti/sequences/06/times.txt"), "0\n\n0.2\n0.3\n");
-  const Outcome run = Kitti("out", {"--kitti_root=" + Path("kitti")});
-  EXPECT_EXIT_CODE(run, 1);
-  EXPECT_THAT(Lines(run.err), ElementsAre(HasSubstr("times.txt:2: a blank line, expected")));
-  EXPECT_FALSE(fs::exists(Path("out")));
-}
-
-TEST_F(MatchTest, WrongFlagsAreUsageErrorsAndLeaveNothing) {
-  const std::pair<Args, const char*> wrong[] = {
-      {{"--first=3", "--last=2"}, "--last: expected at least first + stride"},
-      {{"--first=2", "--last=2"}, "--last: expected at least first + stride"},
-      {{"--last=2", "--stride=3"}, "--last: expected at least first + stride"},
-      {{"--first=-1"}, "--first: expected 0 or more"},
-      {{"--last=-1"}, "--last=-1: expected 0 or more"},
-      {{"--stride=0"}, "--stride: expected at least 1"},
-      {{"--features=surf"}, "--features=surf: expected sift or orb"},
-      {{"--ratio=0"}, "--ratio: expected above 0, at most 1"},
-      {{"--ratio=1.1"}, "--ratio: expected above 0, at most 1"},
-      {{"--ratio=nan"}, "--ratio: expected above 0, at most 1"},
-      {{"--max_features=0"}, "--max_features: expected 1 to 20000"},
-      {{"--threads=0"}, "--threads=0: expected 1 to 1024"},
-      {{"--output="}, "--output is missing"},
-      {{"--sync_tolerance_ms=5"}, "--sync_tolerance_ms: KITTI has one time stamp"},
-      {{"--sequence="}, "--sequence is missing"},
-      {{"--sequence=../06"}, "--sequence: expected the name of a directory"},
-      {{"--sequence=0 6"}, "--sequence: expected the name of a directory"},
-      {{"--euroc_root=x"}, "--kitti_root and --euroc_root: expected one of them"},
-      {{"--kitti_root="}, "--kitti_root or --euroc_root is missing"},
-      {{"--kitti_root=", "--euroc_root=x"}, "--sequence: has no effect with --euroc_root"},
-  };
-  for (const auto& [flags, what] : wrong) {
-    const Outcome run = Kitti("out", flags);
-    EXPECT_EXIT_CODE(run, 2);
-    EXPECT_THAT(run.err, HasSubstr(what));
-  }
-  EXPECT_FALSE(fs::exists(Path("out")));
 }
 
 TEST_F(MatchTest, RealImagesGiveTheMotionOfTheCar) {

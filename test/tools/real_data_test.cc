@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/match_file_list.h"
 #include "rigel/test/problems/trajectories/g2o_reader.h"
 #include "rigel/test/tools/tools_test.h"
 

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/match_file_list.h"
 #include "rigel/test/tools/tools_test.h"
 
 namespace rigel {

@@ -12,6 +12,7 @@
 #include "rigel/core/metrics.h"
 #include "rigel/problems/evaluation/comparison.h"
 #include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/match_file_list.h"
 
 namespace rigel {
 namespace {

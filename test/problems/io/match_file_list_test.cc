@@ -1,5 +1,5 @@
 // Lists of match files from files and directories.
-#include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/match_file_list.h"
 
 #include <filesystem>
 #include <string>

@@ -18,6 +18,17 @@
 namespace rigel {
 namespace {
 
+// A unit ray, and how it moves with the pixels of a camera of 300 to 600 pixels a radian.
+RowPoint RandomPoint(Random* random) {
+  RowPoint point;
+  point.p = RandomVector3(0.0, 1.0, random).normalized();
+  for (int c = 0; c < 2; ++c) {
+    const Eigen::Vector3d any = RandomVector3(0.0, 1.0, random);
+    point.J.col(c) = point.p.cross(any).normalized() / random->Uniform(300.0, 600.0);
+  }
+  return point;
+}
+
 TEST(NoiseInformation, MatchesNumericDifferentiation) {
   for (int index = 0; index < 20; ++index) {
     Random random = Random::Stream(3, index);
@@ -35,9 +46,8 @@ TEST(NoiseInformation, MatchesNumericDifferentiation) {
       for (int k = group.begin; k < group.begin + group.size; ++k) {
         const Match& m = matches.matches()[k];
         SampsonRow row;
-        ASSERT_TRUE(DifferentiateSampson(
-            groups[g], CentredPixel(rig.cameras[m.camera1].intrinsics, m.pixel1),
-            CentredPixel(rig.cameras[m.camera2].intrinsics, m.pixel2), &row));
+        ASSERT_TRUE(DifferentiateSampson(groups[g], RowPointOf(rig.cameras[m.camera1], m.pixel1),
+                                         RowPointOf(rig.cameras[m.camera2], m.pixel2), &row));
         const Vector6 numeric = NumericRow(rig, m, pose);
         EXPECT_LT((row.by_motion - numeric).norm(), 1e-6 * numeric.norm());
         EXPECT_NEAR(row.gradient.norm(), 1.0, 1e-12);
@@ -55,6 +65,51 @@ TEST(NoiseInformation, MatchesNumericDifferentiation) {
   }
 }
 
+// Any points and derivatives by the pixels, as other cameras have them.
+TEST(NoiseInformation, MatchesNumericDifferentiationForAnyCamera) {
+  for (int index = 0; index < 50; ++index) {
+    Random random = Random::Stream(4, index);
+    const Rig rig = MixedRig(&random);
+    const GroupedMatches matches(rig, UnrelatedMatches(rig, 27, &random));
+    const Pose pose = {ExpSO3(RandomVector3(0.0, 0.3, &random)), RandomVector3(0.0, 1.0, &random)};
+    const MotionBasis basis = FullBasis(pose, true);
+    std::vector<GroupLinearization> groups;
+    LinearizeGroups(matches, ResidualKind::kSampson, pose, &basis, &groups);
+    const size_t g = index % groups.size();
+    const RowPoint points[2] = {RandomPoint(&random), RandomPoint(&random)};
+    // The error at a motion near `pose`, with pixel coordinate c moved by h.
+    const auto error = [&](const Vector6& change, int c, double h) {
+      const Pose moved = {ExpSO3(change.head<3>()) * pose.R, pose.t + change.tail<3>()};
+      std::vector<GroupLinearization> at;
+      LinearizeGroups(matches, ResidualKind::kSampson, moved, nullptr, &at);
+      RowPoint p[2] = {points[0], points[1]};
+      p[c / 2].p += h * p[c / 2].J.col(c % 2);
+      return SampsonError(at[g].F, p[0], p[1]);
+    };
+    const auto by_motion = [&](int c, double h) {
+      Vector6 row;
+      for (int m = 0; m < 6; ++m) {
+        row(m) = CentralDifference(
+            [&](double step) {
+              return Eigen::Matrix<double, 1, 1>(error(step * Vector6::Unit(m), c, h));
+            },
+            1e-5)(0);
+      }
+      return row;
+    };
+    SampsonRow row;
+    ASSERT_TRUE(DifferentiateSampson(groups[g], points[0], points[1], &row));
+    EXPECT_NEAR(row.residual, error(Vector6::Zero(), 0, 0.0), 1e-9 * std::abs(row.residual));
+    const Vector6 numeric = by_motion(0, 0.0);
+    EXPECT_LT((row.by_motion - numeric).norm(), 1e-6 * numeric.norm());
+    Eigen::Matrix<double, 6, 4> change;
+    for (int c = 0; c < 4; ++c) {
+      change.col(c) = CentralDifference([&](double h) { return by_motion(c, h); }, 1e-2);
+    }
+    EXPECT_LT((row.by_motion_and_pixels - change).norm(), 1e-3 * change.norm());
+  }
+}
+
 // On an exact match the gradient is the derivative of the error.
 TEST(NoiseInformation, TheGradientIsThatOfAnExactMatch) {
   SceneOptions scene;
@@ -68,9 +123,8 @@ TEST(NoiseInformation, TheGradientIsThatOfAnExactMatch) {
   for (size_t g = 0; g < groups.size(); ++g) {
     const Match& m = matches.matches()[matches.groups()[g].begin];
     SampsonRow row;
-    ASSERT_TRUE(DifferentiateSampson(
-        groups[g], CentredPixel(pair.rig.cameras[m.camera1].intrinsics, m.pixel1),
-        CentredPixel(pair.rig.cameras[m.camera2].intrinsics, m.pixel2), &row));
+    ASSERT_TRUE(DifferentiateSampson(groups[g], RowPointOf(pair.rig.cameras[m.camera1], m.pixel1),
+                                     RowPointOf(pair.rig.cameras[m.camera2], m.pixel2), &row));
     for (int c = 0; c < 4; ++c) {
       const double numeric = CentralDifference(
           [&](double h) {

@@ -4,10 +4,12 @@
 
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "rigel/core/epipolar.h"
 #include "rigel/refine/least_squares/epipolar_residuals.h"
 #include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/least_squares/normal_equations.h"
@@ -27,7 +29,8 @@ struct Problem {
   std::vector<double> weights;
 };
 
-// Residuals from well below to well above the scale of the loss, some matches left out.
+// Residuals from well below to well above the scale of the loss, some matches left out. Every
+// second problem has pixels of different noise, whose rows are of the general form.
 Problem MakeProblem(int index, int num_matches) {
   SceneOptions options;
   options.num_matches = num_matches;
@@ -36,7 +39,12 @@ Problem MakeProblem(int index, int num_matches) {
   FramePair pair = ScenePair(options, index);
   Random random = Random::Stream(11, index);
   const Pose pose = StartNear(*pair.truth, 0.1, 0.05, &random);
-  GroupedMatches matches(pair.rig, pair.matches);
+  MatchColumns columns;
+  for (std::vector<double>* sigma : {&columns.sigma1, &columns.sigma2}) {
+    sigma->resize(index % 2 == 0 ? 0 : pair.matches.size());
+    for (double& s : *sigma) s = random.Uniform(0.5, 2.0);
+  }
+  GroupedMatches matches(pair.rig, pair.matches, columns);
   std::vector<double> weights(matches.size());
   for (double& w : weights) w = random.Uniform() < 0.2 ? 0.0 : random.Uniform();
   return {std::move(pair), std::move(matches), pose, std::move(weights)};
@@ -82,7 +90,7 @@ Expected SumByKernel(const Problem& problem, const SampsonKernelOptions& options
     const MatchGroup& group = problem.matches.groups()[g];
     const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F = groups[g].F;
     SampsonSums sums, cost_only;
-    const PixelArrays pixels = problem.matches.Pixels(group);
+    const RowArrays pixels = problem.matches.Rows(group);
     const double* weights = problem.weights.data() + group.begin;
     SumSampson(options, pixels, weights, F.data(), groups[g].rounding2, SampsonParts::kAll, &sums,
                path);
@@ -103,7 +111,7 @@ Expected SumByKernel(const Problem& problem, const SampsonKernelOptions& options
 Expected SumByMotion(const Problem& problem, const SampsonKernelOptions& options) {
   MotionNormalEquations sum;
   for (const MatchGroup& group : problem.matches.groups()) {
-    AddNormalEquations(options, problem.matches, group, problem.matches.Pixels(group),
+    AddNormalEquations(options, problem.matches, group, problem.matches.Rows(group),
                        problem.weights.data() + group.begin, problem.pose, SampsonParts::kAll,
                        &sum);
   }
@@ -137,14 +145,15 @@ TEST(SampsonKernel, SumsTheResidualsAndJacobiansOfTheMatches) {
 }
 
 TEST(SampsonKernel, CostAndGradientAloneAreTheSame) {
-  for (const LossKind loss : kLosses) {
-    const Problem problem = MakeProblem(7, 200);
+  for (int index = 0; index < 2 * static_cast<int>(std::size(kLosses)); ++index) {
+    const LossKind loss = kLosses[index / 2];
+    const Problem problem = MakeProblem(index, 200);
     const MatchGroup& group = problem.matches.groups()[0];
     SampsonKernelOptions options;
     options.loss = loss;
     const auto sum = [&](SampsonParts parts) {
       MotionNormalEquations equations;
-      AddNormalEquations(options, problem.matches, group, problem.matches.Pixels(group),
+      AddNormalEquations(options, problem.matches, group, problem.matches.Rows(group),
                          problem.weights.data() + group.begin, problem.pose, parts, &equations);
       return equations;
     };
@@ -192,9 +201,10 @@ TEST(SampsonKernel, EveryPathGivesTheSameBits) {
   if (BestCpuPath() == CpuPath::kBaseline) GTEST_SKIP() << "this machine has one path";
   for (const LossKind loss : kLosses) {
     for (int size = 0; size < 140; ++size) {
+      SCOPED_TRACE(size);
       const Problem problem = MakeProblem(size, 200);
       const MatchGroup& group = problem.matches.groups()[0];
-      PixelArrays pixels = problem.matches.Pixels(group);
+      RowArrays pixels = problem.matches.Rows(group);
       pixels.size = std::min(size, pixels.size);
       const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F =
           problem.matches.Fundamental(group, problem.pose);
@@ -239,11 +249,78 @@ TEST(SampsonKernel, ProjectionGivesTheSameBitsOnEveryPath) {
   }
 }
 
+// Points and derivatives of any kind: the sums against numeric derivatives by the entries of F.
+TEST(SampsonKernel, TakesTheRowsOfAnyCamera) {
+  Random random(6);
+  constexpr int kSize = 37;
+  constexpr size_t kStride = 48;
+  std::vector<double> data((4 + kGeneralArrays) * kStride, 1.0);
+  for (double& number : data) number = random.Normal();
+  const double* x1 = data.data();
+  const RowArrays rows = {x1,    x1 + kStride,     x1 + 2 * kStride, x1 + 3 * kStride,
+                          kSize, x1 + 4 * kStride, kStride};
+  const auto point = [&](int k, int side) {
+    RowPoint p;
+    const double* of_k = x1 + k;
+    p.p = {of_k[2 * side * kStride], of_k[(2 * side + 1) * kStride], of_k[(4 + side) * kStride]};
+    for (int i = 0; i < 6; ++i) p.J(i / 2, i % 2) = of_k[(6 + 6 * side + i) * kStride];
+    return p;
+  };
+  using RowMajor3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  RowMajor3d F;
+  for (int i = 0; i < 9; ++i) F.data()[i] = random.Normal();
+  std::vector<double> weights(kSize), leverages(kSize), epipole(kSize), errors(kSize);
+  for (double& w : weights) w = random.Uniform();
+  SampsonKernelOptions options;
+  options.loss = LossKind::kCauchy;
+  SampsonSums sums;
+  SumSampson(options, rows, weights.data(), F.data(), 1e-25, SampsonParts::kAll, &sums);
+  Eigen::Matrix<double, 9, 9> C = Eigen::Matrix<double, 9, 9>::Zero();
+  for (int i = 0; i < 9; ++i) C(i, i) = 1.0 + i;
+  C(2, 5) = C(5, 2) = 0.5;
+  SampsonLeverages(rows, weights.data(), F.data(), C.data(), 1e-25, leverages.data());
+  GradientWeights(rows, F.data(), 0.1, epipole.data());
+  SquaredSampsonErrors(rows, F.data(), errors.data());
+  const auto loss = MakeLoss(options.loss, options.loss_scale);
+  double cost = 0.0;
+  Eigen::Matrix<double, 9, 1> g = Eigen::Matrix<double, 9, 1>::Zero();
+  Eigen::Matrix<double, 9, 9> H = Eigen::Matrix<double, 9, 9>::Zero();
+  for (int k = 0; k < kSize; ++k) {
+    const RowPoint p1 = point(k, 0), p2 = point(k, 1);
+    const double r = SampsonError(F, p1, p2);
+    EXPECT_NEAR(errors[k], r * r, 1e-12 * (1.0 + r * r));
+    Eigen::Matrix<double, 9, 1> j;
+    for (int i = 0; i < 9; ++i) {
+      constexpr double kStep = 1e-6;
+      RowMajor3d up = F, down = F;
+      up.data()[i] += kStep;
+      down.data()[i] -= kStep;
+      j(i) = (SampsonError(up, p1, p2) - SampsonError(down, p1, p2)) / (2.0 * kStep);
+    }
+    const double w = weights[k];
+    EXPECT_NEAR(leverages[k], w * w * j.dot(C * j), 1e-6 * (1.0 + j.squaredNorm()));
+    const double gradient2 = (p2.J.transpose() * F * p1.p).squaredNorm() +
+                             (p1.J.transpose() * F.transpose() * p2.p).squaredNorm();
+    const double mixed2 = (p2.J.transpose() * F * p1.J).squaredNorm();
+    EXPECT_NEAR(epipole[k], gradient2 / (gradient2 + 0.1 * mixed2), 1e-12);
+    const double s = w * w * r * r;
+    double rho[3];
+    loss->Evaluate(s, rho);
+    cost += 0.5 * rho[0];
+    g += rho[1] * w * w * r * j;
+    const double newton = rho[1] + 2.0 * s * rho[2];
+    H += w * w * (newton > rho[1] / 3.0 ? newton : rho[1]) * j * j.transpose();
+  }
+  EXPECT_NEAR(sums.cost, cost, 1e-11 * cost);
+  EXPECT_LT((Eigen::Map<Eigen::Matrix<double, 9, 1>>(sums.g) - g).norm(), 1e-6 * g.norm());
+  EXPECT_LT((Eigen::Map<Eigen::Matrix<double, 9, 9>>(sums.H) - H).norm(), 1e-6 * H.norm());
+}
+
 TEST(SampsonKernel, AMatchAtAnEpipoleAddsNothing) {
   // F = [e]x with the epipole at the origin of both images.
   const double F[9] = {0, -1, 0, 1, 0, 0, 0, 0, 0};
   const double zero[kKernelPadding] = {}, one[1] = {1.0};
-  const PixelArrays pixels{zero, zero, zero, zero, 1};
+  const RowArrays pixels{zero, zero, zero, zero, 1};
   SampsonSums sums;
   SumSampson(SampsonKernelOptions(), pixels, one, F, 1e-30, SampsonParts::kAll, &sums);
   EXPECT_EQ(sums.cost, 0.0);

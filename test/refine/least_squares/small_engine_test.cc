@@ -45,7 +45,10 @@ TEST(PackedMatches, HoldTheMatchesOfWeightAboveZeroGroupByGroup) {
   scene.inter_share = 0.5;
   scene.num_matches = 50;
   const FramePair pair = ScenePair(scene, 0);
-  const GroupedMatches matches(pair.rig, pair.matches);
+  // With another noise for each pixel, so that the rows are of the general form.
+  MatchColumns columns;
+  for (size_t k = 0; k < pair.matches.size(); ++k) columns.sigma1.push_back(1.0 + 0.01 * k);
+  const GroupedMatches matches(pair.rig, pair.matches, columns);
   std::vector<double> weights(matches.size());
   for (size_t k = 0; k < weights.size(); ++k) weights[k] = 0.5 * (k % 3);
   PackedMatches packed;
@@ -54,13 +57,18 @@ TEST(PackedMatches, HoldTheMatchesOfWeightAboveZeroGroupByGroup) {
   int n = 0;
   for (size_t g = 0; g < packed.groups.size(); ++g) {
     const MatchGroup& group = matches.groups()[g];
-    const PixelArrays pixels = matches.Pixels(group);
+    const RowArrays pixels = matches.Rows(group);
     int in_group = 0;
     for (int k = 0; k < group.size; ++k) {
       if (weights[group.begin + k] == 0.0) continue;
       EXPECT_EQ(packed.weights[n++], weights[group.begin + k]);
       EXPECT_EQ(packed.groups[g].x1[in_group], pixels.x1[k]);
-      EXPECT_EQ(packed.groups[g].y2[in_group++], pixels.y2[k]);
+      EXPECT_EQ(packed.groups[g].y2[in_group], pixels.y2[k]);
+      for (size_t c = 0; c < kGeneralArrays; ++c) {
+        EXPECT_EQ(packed.groups[g].general[c * packed.groups[g].stride + in_group],
+                  pixels.general[c * pixels.stride + k]);
+      }
+      ++in_group;
     }
     EXPECT_EQ(packed.groups[g].size, in_group);
   }

@@ -30,11 +30,15 @@ Match Of(int c, double p, int d, double q) {
   return m;
 }
 
+std::vector<size_t> Distinct(const std::vector<Match>& matches, std::vector<int>* first_of) {
+  return DistinctMatches(ImagePoints(matches, {}), first_of);
+}
+
 TEST(SharedPixels, AnExactRepeatCountsOnce) {
   const std::vector<Match> matches = {Of(0, 1, 0, 2), Of(0, 3, 0, 4), Of(0, 1, 0, 2),
                                       Of(1, 1, 0, 2), Of(0, 1, 1, 2), Of(0, 1, 0, 2)};
   std::vector<int> first_of;
-  EXPECT_THAT(DistinctMatches(matches, &first_of), ElementsAre(0, 1, 3, 4));
+  EXPECT_THAT(Distinct(matches, &first_of), ElementsAre(0, 1, 3, 4));
   EXPECT_THAT(first_of, ElementsAre(0, 1, 0, 3, 4, 0));
 }
 
@@ -47,19 +51,19 @@ TEST(SharedPixels, APointWithManyPartnersInOneImageIsNoMatch) {
     std::vector<Match> matches = {of(0, 7, 0, 1), of(0, 7, 0, 2), of(0, 7, 0, 3), of(0, 7, 1, 4),
                                   of(0, 8, 0, 1)};
     std::vector<int> first_of;
-    EXPECT_THAT(DistinctMatches(matches, &first_of), ElementsAre(0, 1, 2, 3, 4));
+    EXPECT_THAT(Distinct(matches, &first_of), ElementsAre(0, 1, 2, 3, 4));
     // A repeat is no further partner; a fourth one is.
     matches.push_back(of(0, 7, 0, 3));
-    EXPECT_THAT(DistinctMatches(matches, &first_of), ElementsAre(0, 1, 2, 3, 4));
+    EXPECT_THAT(Distinct(matches, &first_of), ElementsAre(0, 1, 2, 3, 4));
     matches.push_back(of(0, 7, 0, 5));
-    EXPECT_THAT(DistinctMatches(matches, &first_of), ElementsAre(3, 4));
+    EXPECT_THAT(Distinct(matches, &first_of), ElementsAre(3, 4));
     EXPECT_THAT(first_of, ElementsAre(-1, -1, -1, 3, 4, -1, -1));
   }
 }
 
 TEST(SharedPixels, NothingIsSharedAmongNone) {
   std::vector<int> first_of;
-  EXPECT_TRUE(DistinctMatches({}, &first_of).empty());
+  EXPECT_TRUE(Distinct({}, &first_of).empty());
   EXPECT_TRUE(first_of.empty());
   EXPECT_EQ(CountDistinctPixels(0, {}), 0);
 }
@@ -188,53 +192,60 @@ TEST(SharedPixels, CopiesOfAFewRowsAreNoEvidence) {
   EXPECT_LE(far_off, 2);
 }
 
-// One key point in three rows, in the same image and in that of the other camera: the covariance
-// counts the noise of its pixel once.
+// The scene's rig, truth and points that both cameras see at both times: a point in four rows, in
+// the same image and in that of the other camera. `landmark` gets the number of the point of each.
+FramePair FourRowsAPoint(int index, std::vector<int64_t>* landmark) {
+  SceneOptions scene;
+  scene.inter_share = 0.5;
+  FramePair pair = ScenePair(scene, index);
+  pair.matches.clear();
+  pair.columns = {};
+  Random random = Random::Stream(5, index);
+  const auto noisy = [&](const Pixel& p) {
+    const double v = p.y() + 0.5 * random.Normal();
+    const double u = p.x() + 0.5 * random.Normal();
+    return Pixel(u, v);
+  };
+  for (int k = 0; k < 300; ++k) {
+    const double z = random.Uniform(5, 30);
+    const double y = random.Uniform(-4, 4);
+    const double x = random.Uniform(-8, 8);
+    const Eigen::Vector3d X(x, y, z);
+    Pixel first[2], second[2];
+    bool seen = true;
+    for (int c = 0; c < 2; ++c) {
+      const RigCamera& camera = pair.rig.cameras[c];
+      seen = seen && Sees(camera, X, &first[c]) && Sees(camera, *pair.truth * X, &second[c]);
+    }
+    if (!seen) continue;
+    const Pixel p0 = noisy(first[0]), p1 = noisy(first[1]);
+    const Pixel q0 = noisy(second[0]), q1 = noisy(second[1]);
+    for (const auto& [c, p, d, q] : {std::tuple(0, p0, 0, q0), std::tuple(1, p1, 1, q1),
+                                     std::tuple(0, p0, 1, q1), std::tuple(1, p1, 0, q0)}) {
+      Match m;
+      m.camera1 = c;
+      m.camera2 = d;
+      m.pixel1 = p;
+      m.pixel2 = q;
+      pair.matches.push_back(m);
+      landmark->push_back(k);
+    }
+  }
+  return pair;
+}
+
+// The covariance counts the noise of a pixel once.
 TEST(SharedPixels, RowsOfOnePointAreCorrelated) {
   double nees = 0.0;
   constexpr int kPairs = 200;
   for (int index = 0; index < kPairs; ++index) {
-    SceneOptions scene;
-    scene.num_matches = 150;
-    scene.inter_share = 0.5;
-    scene.noise_px = 0.0;
-    FramePair pair = ScenePair(scene, index);
-    // Intra-camera matches of the scene, and their points in the other camera, if it sees them.
-    std::vector<Match> matches;
-    Random random = Random::Stream(5, index);
-    const auto noisy = [&](const Pixel& p) {
-      const double v = p.y() + 0.5 * random.Normal();
-      const double u = p.x() + 0.5 * random.Normal();
-      return Pixel(u, v);
-    };
-    for (int k = 0; k < 300; ++k) {
-      const double z = random.Uniform(5, 30);
-      const double y = random.Uniform(-4, 4);
-      const double x = random.Uniform(-8, 8);
-      const Eigen::Vector3d X(x, y, z);
-      Pixel first[2], second[2];
-      bool seen = true;
-      for (int c = 0; c < 2; ++c) {
-        const RigCamera& camera = pair.rig.cameras[c];
-        seen = seen && Sees(camera, X, &first[c]) && Sees(camera, *pair.truth * X, &second[c]);
-      }
-      if (!seen) continue;
-      const Pixel p0 = noisy(first[0]), p1 = noisy(first[1]);
-      const Pixel q0 = noisy(second[0]), q1 = noisy(second[1]);
-      for (const auto& [c, p, d, q] : {std::tuple(0, p0, 0, q0), std::tuple(1, p1, 1, q1),
-                                       std::tuple(0, p0, 1, q1), std::tuple(1, p1, 0, q0)}) {
-        Match m;
-        m.camera1 = c;
-        m.camera2 = d;
-        m.pixel1 = p;
-        m.pixel2 = q;
-        matches.push_back(m);
-      }
-    }
-    ASSERT_GT(matches.size(), 100u);
+    std::vector<int64_t> landmark;
+    const FramePair pair = FourRowsAPoint(index, &landmark);
+    ASSERT_GT(pair.matches.size(), 100u);
     Random start = Random::Stream(6, index);
     Pose pose = StartNear(*pair.truth, 0.05, 0.02, &start);
-    const RefineSummary summary = Refine(RefineOptions(), pair.rig, matches, MotionPrior(), &pose);
+    const RefineSummary summary =
+        Refine(RefineOptions(), pair.rig, pair.matches, MotionPrior(), &pose);
     ASSERT_TRUE(summary.covariance.has_value());
     const Vector6d d = Difference(*pair.truth, pose);
     nees += d.dot(summary.covariance->ldlt().solve(d)) / 6.0 / kPairs;
@@ -242,6 +253,41 @@ TEST(SharedPixels, RowsOfOnePointAreCorrelated) {
   std::printf("[ measured ] NEES %.3f\n", nees);
   EXPECT_GT(nees, 0.85);
   EXPECT_LT(nees, 1.2);
+}
+
+// Pixels of one point that differ from row to row, as some trackers write them: the column
+// `landmark` says what equal pixels would.
+TEST(SharedPixels, LandmarksSayWhatPixelsCannot) {
+  for (int index = 0; index < 5; ++index) {
+    std::vector<int64_t> landmark;
+    const FramePair equal = FourRowsAPoint(index, &landmark);
+    FramePair moved = equal;
+    Random random = Random::Stream(7, index);
+    for (Match& m : moved.matches) {
+      m.pixel1.x() += 1e-9 * random.Normal();
+      m.pixel2.x() += 1e-9 * random.Normal();
+    }
+    const MotionEstimate reference = EstimateMotion(EstimateOptions(), equal);
+    const MotionEstimate unlinked = EstimateMotion(EstimateOptions(), moved);
+    moved.columns.landmark = landmark;
+    const MotionEstimate linked = EstimateMotion(EstimateOptions(), moved);
+    for (const MotionEstimate* e : {&reference, &unlinked, &linked}) {
+      ASSERT_EQ(e->status, EstimateStatus::kSuccess);
+      ASSERT_TRUE(e->refine.covariance.has_value());
+    }
+    EXPECT_NEAR(linked.refine.rotation_sigma / reference.refine.rotation_sigma, 1.0, 1e-5);
+    EXPECT_GT(std::abs(unlinked.refine.rotation_sigma / reference.refine.rotation_sigma - 1.0),
+              0.01);
+    // A repeat counts once.
+    FramePair repeated = moved;
+    repeated.matches.insert(repeated.matches.end(), moved.matches.begin(), moved.matches.end());
+    for (size_t k = moved.matches.size(); k < repeated.matches.size(); ++k) {
+      repeated.matches[k].pixel1.y() += 1e-9;
+    }
+    repeated.columns.landmark.insert(repeated.columns.landmark.end(), landmark.begin(),
+                                     landmark.end());
+    ExpectSameMotion(EstimateMotion(EstimateOptions(), repeated), linked);
+  }
 }
 
 TEST(SharedPixels, ARefinementOfRepeatedAndLostRowsIsThatOfTheOthers) {
