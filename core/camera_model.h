@@ -15,18 +15,16 @@
 //   opencv_fisheye         fx fy cx cy k1 k2 k3 k4                   angle         n = k1 .. k4
 //   simple_radial_fisheye  f cx cy k                                 angle         n = k
 //   radial_fisheye         f cx cy k1 k2                             angle         n = k1 k2
-//   thin_prism_fisheye     fx fy cx cy k1 k2 p1 p2 k3 k4 sx1 sy1     angle         n = k1 .. k4, p,
-//                                                                                  s
+//   thin_prism_fisheye     fx fy cx cy k1 k2 p1 p2 k3 k4 sx1 sy1     angle         n = k1..k4, p, s
 //   fov                    fx fy cx cy omega                         angle
 //   omni                   xi fx fy cx cy k1 k2 p1 p2                sphere        n = k1 k2, p
 //   double_sphere          xi alpha fx fy cx cy                      double sphere
 //   eucm                   alpha beta fx fy cx cy                    enhanced
 //
-// Names and orders of the first eleven are those of COLMAP 4.2.0.dev0 and 3.8 (src/colmap/sensor),
-// in lower case. COLMAP's pixels, and with them cx and cy, are larger by 0.5. It refuses rays
-// beyond 90 degrees; here they go on along the same formula. The last three are Kalibr's
-// (aslam_cameras, OmniProjection.hpp and its like) in its orders; its pinhole-radtan is opencv, its
-// pinhole-equi opencv_fisheye.
+// Names and orders of the first eleven are COLMAP's (4.2.0.dev0, and the same in 3.8), in lower
+// case. Its pixels, and with them cx and cy, are larger by 0.5. It refuses rays beyond 90 degrees;
+// here they go on along the same formula. The last three are Kalibr's (aslam_cameras) in its
+// orders; its pinhole-radtan is opencv, its pinhole-equi opencv_fisheye.
 //
 // Nothing here allocates, throws or logs. Points and pixels outside a model's domain are refused.
 // So are numbers that are not finite.
