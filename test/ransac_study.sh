@@ -42,6 +42,8 @@ table() {
   echo
   echo "## Time: 626 matches, 30 percent outliers"
   echo
+  echo "OpenGV's rows need a build with \`RIGEL_WITH_OPENGV\`."
+  echo
   table --ransac=speed --pairs="$pairs"
   if [[ -n $matches ]]; then
     echo
@@ -58,11 +60,9 @@ table() {
   echo
   echo "## Parts left out or added"
   echo
-  echo "The least number of iterations and the finalists cost time here. After the bail-out test early termination saves"
-  echo "little. Times that differ by less than a tenth may be the machine's noise."
-  echo
-  echo "The local optimization in the loop was also measured on 22 sets of pairs, with 3 solvers and 3 seeds. Without it the"
-  echo "errors are the same in most rows. The time is 1.19 times as long in the mean, and up to 2.4 times on surround_sim."
+  echo "The errors are the same in all rows. The finalists cost time here, and so do more iterations than needed. The bail-out"
+  echo "test saves time among many outliers; after it early termination saves little. Times that differ by less than a tenth"
+  echo "may be the machine's noise."
   echo
   table --ransac=ablation --pairs="$pairs"
   echo

@@ -2,7 +2,8 @@
 # with the tests for this one, so that a source that is missing here is found. `root` is the source directory.
 # The scene needs nothing but core.
 add_library(scene STATIC ${root}/problems/scenes/image_noise.cc ${root}/problems/scenes/moving_car.cc
-                         ${root}/problems/scenes/scene_matches.cc ${root}/problems/scenes/synthetic.cc)
+                         ${root}/problems/scenes/scene_matches.cc ${root}/problems/scenes/scene_rig.cc
+                         ${root}/problems/scenes/synthetic.cc)
 target_link_libraries(scene PUBLIC rigel::minimal)
 
 add_executable(ransac_inliers ${root}/test/arm64/ransac_inliers.cc)
