@@ -90,9 +90,11 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         stereo = measure.write_stereo_rig(folder)
         for name in arguments.rigs.split(","):
-            is_stereo = name == "stereo"
-            rig = stereo if is_stereo else measure.rig_files(name, arguments.rig_dir)[0]
-            settings += measure_rig(programs, rig, 0 if is_stereo else arguments.outliers, arguments)
+            if name == "stereo":
+                settings += measure_rig(programs, stereo, 0, arguments)
+            else:
+                rig = measure.rig_files(name, arguments.rig_dir)[0]
+                settings += measure_rig(programs, rig, arguments.outliers, arguments)
     members = ["pairs", "not_ok", "wrong", "doubtful", "unknown", "quiet", "p99_deg", "max_deg"]
     measure.print_table(["rig", "outl.", "solver", "pairs", "not ok", "wrong", "doubtful",
                          "unknown", "quiet", "p99", "max"],

@@ -209,8 +209,8 @@ def count_poses(path):
 
 
 def write_stereo_rig(directory):
-    """The file of a stereo rig as KITTI's: 1241 x 376 pixels, focal length 718, 0.54 m apart, 1.65 m
-    above the ground. The body is the left camera."""
+    """The file of a stereo rig as KITTI's: 1241 x 376 pixels, focal length 718, 0.54 m apart,
+    1.65 m above the ground. The body is the left camera."""
     camera = {"model": "pinhole", "parameters": [718, 718, 620, 188], "width": 1241, "height": 376,
               "q": [1, 0, 0, 0]}
     path = os.path.join(directory, "stereo.json")
@@ -605,9 +605,10 @@ def bound(matches, cameras, motion, sigmas, length_sd=1.0):
         if sd > 0:
             add_row(scaled(derivative, 1 / sd))
     along = rig_motion(motion, cameras)
-    by_length = scaled(along, 1 / dot(along, along))
-    arm = apply(motion[0], rig_centre(cameras))
-    add_row(scaled(cross(arm, by_length) + by_length, 1 / length_sd))
+    if norm(along) > 0:
+        by_length = scaled(along, 1 / dot(along, along))
+        arm = apply(motion[0], rig_centre(cameras))
+        add_row(scaled(cross(arm, by_length) + by_length, 1 / length_sd))
     return inverse(information)
 
 

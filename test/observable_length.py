@@ -45,8 +45,8 @@ def folders_of(name, data):
 
 
 def bound_of(file):
-    """The bound of |t| as a fraction, of the matches that agree with the truth; None for a file that
-    does not state its noise."""
+    """The bound of |t| as a fraction, of the matches that agree with the truth; None for a file
+    that does not state its noise."""
     stated = file.line("noise_px")
     if stated is None:
         return None

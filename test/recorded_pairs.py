@@ -13,8 +13,8 @@ The matches of each pair are split into two parts in three ways:
 
 rigel_estimate runs on each part. Printed are the medians over the pairs of the NEES of the
 difference of the rotations, d' (Ca + Cb)^-1 d with d = log(Ra Rb'), over that of chi2 with three
-degrees of freedom: 1 is right, 4 means sigmas two times too small. An error of the calibration is in
-both parts, so Ca + Cb with its term in each states too much of it where it moves both alike.
+degrees of freedom: 1 is right, 4 means sigmas two times too small. An error of the calibration is
+in both parts, so Ca + Cb with its term in each states too much of it where it moves both alike.
 
   pairs, left out  pairs, and those without a rotation or a valid covariance in one of the parts
   median, p90      of that ratio

@@ -18,8 +18,8 @@ time and no prior. rigel_estimate runs with unknown noise. Printed for each scen
   n rot    median NEES of the rotation over that of chi2, of the others; 1 is right
   n dir    the same of the direction of the rig's motion, where that is stated
   rot, dir the pairs whose rotation and whose direction of t are stated as observable
-  gross    of these, pairs with an observable rotation that is off by more than 1 degree and 5 of its
-           stated sigmas, or an observable direction off by more than 10 degrees and 5 sigmas
+  gross    of these, pairs with an observable rotation that is off by more than 1 degree and 5 of
+           its stated sigmas, or an observable direction off by more than 10 degrees and 5 sigmas
   percent  the same of all pairs
   err      median rotation error of all motions, degrees
 """

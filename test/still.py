@@ -18,8 +18,9 @@ unknown noise and no prior. Printed for each:
   fail      pairs without a refined motion
 
 Recorded directories of a standing rig have no truth that is good enough. Their even and odd matches
-are compared: `rot deg` is the RMS difference of the rotations, `over` that over its stated standard
-deviation, and NEES and median are those of the difference. The claims are those of all matches.
+are compared: `rot deg` is the RMS difference of the rotations, `over` the RMS of that over its
+stated standard deviation, and NEES and median are those of the difference. The claims are those of
+all matches.
 """
 import math
 import os
@@ -106,21 +107,22 @@ def measure_recorded(programs, directory):
             for name, rows in zip("ab", splits.halves_of(file, None)):
                 file.write(os.path.join(folder, name), rows)
         halves = [programs.estimate(os.path.join(folder, name))[0] for name in "ab"]
-    squares, variances, values = [], [], []
+    differences, ratios, values = [], [], []
     for file in files:
         pair = [half.get(file.name, {}) for half in halves]
-        value = measure.difference_nees(*pair)
-        if value is None:
+        motions = [measure.refined_motion(result) for result in pair]
+        if None in motions:
             continue
-        values.append(value)
-        difference = measure.rotation_difference(*map(measure.refined_motion, pair))
-        squares.append(measure.dot(difference, difference))
-        variances.append(sum(measure.rotation_covariance(p)[k][k] for p in pair for k in range(3)))
-    square, variance = measure.mean(squares), measure.mean(variances)
+        differences.append(measure.norm(measure.rotation_difference(*motions)))
+        value = measure.difference_nees(*pair)
+        if value is not None:
+            values.append(value)
+            variance = sum(measure.rotation_covariance(p)[k][k] for p in pair for k in range(3))
+            ratios.append(differences[-1] / math.sqrt(variance))
     names = [file.name for file in files]
     return {"rig": os.path.basename(os.path.normpath(directory)), "motion": "recorded",
-            "pairs": len(files), "error_deg": math.degrees(math.sqrt(square)) if squares else None,
-            "over": math.sqrt(square / variance) if squares else None,
+            "pairs": len(files), "over": measure.rms(ratios),
+            "error_deg": math.degrees(measure.rms(differences)) if differences else None,
             "nees": measure.mean([value / 3 for value in values]),
             "median": measure.median([value / measure.CHI2_MEDIAN[3] for value in values]),
             "t_over_sd": None, **claims(results, names)}
