@@ -261,7 +261,7 @@ void Refiner::Describe(bool done) {
     DescribeObservability(options_, matches_, point_, fitter_, fit_, &summary_);
   }
   summary_.num_inliers = fit_.num_inliers;
-  summary_.inliers.assign(matches_.size(), 0);
+  summary_.inliers.assign(matches_.num_given(), 0);
   for (int k = 0; k < matches_.size(); ++k) {
     summary_.inliers[matches_.original(k)] = fit_.inliers[k];
   }

@@ -317,10 +317,6 @@ bool TakeRig(StreetOptions* street, std::string* error) {
   }
   street->rig = file.rig;
   if (file.ground_m && !IsGiven("ground_m")) street->ground_m = *file.ground_m;
-  if (file.num_undistorted > 0) {
-    std::cerr << PrintablePath(FLAGS_rig) << ": the distortion of " << file.num_undistorted
-              << " of " << file.rig.size() << " cameras is left out\n";
-  }
   if (!file.down || !file.forward) {
     std::cerr << PrintablePath(FLAGS_rig) << ": taken from the cameras: down "
               << DirectionText(street->axes.down) << ", forward "

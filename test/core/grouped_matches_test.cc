@@ -32,13 +32,13 @@ FramePair MakePair(int num_matches, int seed) {
   std::string error;
   EXPECT_TRUE(MakeScenePair(options, seed, &pair, &error)) << error;
   for (int k = 0; k < 3; ++k) {
-    PinholeCamera& camera = pair.rig.cameras[k].intrinsics;
-    const PinholeCamera old = camera;
-    camera = {300.0 + 100 * k, 350.0 + 80 * k, 300.0 + 10 * k, 250.0, 800, 600};
+    Camera& camera = pair.rig.cameras[k].intrinsics;
+    const Camera old = camera;
+    camera = Camera::Pinhole(300.0 + 100 * k, 350.0 + 80 * k, 300.0 + 10 * k, 250.0, 800, 600);
     // The same rays through the new camera.
     for (Match& match : pair.matches) {
-      if (match.camera1 == k) match.pixel1 = camera.Project(old.Normalize(match.pixel1));
-      if (match.camera2 == k) match.pixel2 = camera.Project(old.Normalize(match.pixel2));
+      if (match.camera1 == k) Project(camera, AlongRay(old, match.pixel1), &match.pixel1);
+      if (match.camera2 == k) Project(camera, AlongRay(old, match.pixel2), &match.pixel2);
     }
   }
   return pair;
@@ -193,10 +193,10 @@ TEST(GroupedMatches, SquaredErrorsAreThoseOfCoreInGroupedOrder) {
 bool IsInlierInFront(const FramePair& pair, const Pose& pose, const Match& match) {
   const double r = SampsonError(pose, pair.rig, match);
   if (!(r * r < kThreshold * kThreshold)) return false;
-  const PinholeCamera& c1 = pair.rig.cameras[match.camera1].intrinsics;
-  const PinholeCamera& c2 = pair.rig.cameras[match.camera2].intrinsics;
+  const Camera& c1 = pair.rig.cameras[match.camera1].intrinsics;
+  const Camera& c2 = pair.rig.cameras[match.camera2].intrinsics;
   const double min_sin_parallax =
-      2.0 * kThreshold / std::min(std::min(c1.fx, c1.fy), std::min(c2.fx, c2.fy));
+      2.0 * kThreshold / std::min(std::min(c1.fx(), c1.fy()), std::min(c2.fx(), c2.fy()));
   const Cheirality cheirality =
       TestCheirality(pose, MakeRayPair(pair.rig, match), min_sin_parallax);
   return cheirality == Cheirality::kInFront || cheirality == Cheirality::kUndecided;

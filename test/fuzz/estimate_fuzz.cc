@@ -8,6 +8,7 @@
 
 #include "rigel/minimal/catalogue.h"
 #include "rigel/refine/estimate_motion.h"
+#include "rigel/test/core/pinhole.h"
 #include "rigel/test/fuzz/fuzz.h"
 
 namespace {
@@ -35,10 +36,11 @@ rigel::Rig MakeRig(Bytes* bytes) {
   const int size = bytes->Choice(6);
   for (int k = 0; k < size; ++k) {
     rigel::RigCamera camera;
-    camera.intrinsics.fx = bytes->Double(1, 1000);
-    camera.intrinsics.fy = bytes->Chance(200) ? camera.intrinsics.fx : bytes->Double(1, 1000);
-    camera.intrinsics.cx = bytes->Double(0, 640);
-    camera.intrinsics.cy = bytes->Double(0, 480);
+    camera.intrinsics.parameters[0] = bytes->Double(1, 1000);
+    camera.intrinsics.parameters[1] =
+        bytes->Chance(200) ? camera.intrinsics.fx() : bytes->Double(1, 1000);
+    camera.intrinsics.parameters[2] = bytes->Double(0, 640);
+    camera.intrinsics.parameters[3] = bytes->Double(0, 480);
     camera.Q = Rotation(bytes);
     // Far origins too: UTM coordinates.
     const double reach = bytes->Chance(16) ? 5e6 : 1.0;
@@ -90,9 +92,9 @@ std::vector<rigel::Match> MakeMatches(const rigel::Rig& rig, const rigel::Pose& 
     if (kind < 180 && rig.size() > 0) {
       const rigel::RigCamera& from = rig.cameras[match.camera1];
       const rigel::RigCamera& to = rig.cameras[match.camera2];
-      const Eigen::Vector3d ray = from.Q * from.intrinsics.Normalize(match.pixel1);
+      const Eigen::Vector3d ray = from.Q * AlongRay(from.intrinsics, match.pixel1);
       const Eigen::Vector3d X = from.s + (near + depth * kind / 180.0) * ray;
-      match.pixel2 = to.intrinsics.Project(to.Q.transpose() * (motion * X - to.s)) +
+      match.pixel2 = ProjectPinhole(to.intrinsics, to.Q.transpose() * (motion * X - to.s)) +
                      noise * Eigen::Vector2d{bytes->Uniform(-1, 1), bytes->Uniform(-1, 1)};
     } else if (kind < 190 && !matches.empty()) {
       match = matches[bytes->Choice(static_cast<int>(matches.size()))];

@@ -191,13 +191,13 @@ struct Twin {
     }
     const Vector3<T> b = R * s_i + t - s_j;
     const Matrix3<T> E = Q_j.transpose() * Cross<T>(b) * R * Q_i;
-    const PinholeCamera& ci = i.intrinsics;
-    const PinholeCamera& cj = j.intrinsics;
+    const Camera& ci = i.intrinsics;
+    const Camera& cj = j.intrinsics;
     Matrix3<T> Ki_inverse, Kj_inverse;
-    Ki_inverse << T(1 / ci.fx), T(0), T(-ci.cx / ci.fx), T(0), T(1 / ci.fy), T(-ci.cy / ci.fy),
-        T(0), T(0), T(1);
-    Kj_inverse << T(1 / cj.fx), T(0), T(-cj.cx / cj.fx), T(0), T(1 / cj.fy), T(-cj.cy / cj.fy),
-        T(0), T(0), T(1);
+    Ki_inverse << T(1 / ci.fx()), T(0), T(-ci.cx() / ci.fx()), T(0), T(1 / ci.fy()),
+        T(-ci.cy() / ci.fy()), T(0), T(0), T(1);
+    Kj_inverse << T(1 / cj.fx()), T(0), T(-cj.cx() / cj.fx()), T(0), T(1 / cj.fy()),
+        T(-cj.cy() / cj.fy()), T(0), T(0), T(1);
     const Matrix3<T> F = Kj_inverse.transpose() * E * Ki_inverse;
     const Vector3<T> p = match.pixel1.homogeneous().cast<T>();
     const Vector3<T> q = match.pixel2.homogeneous().cast<T>();
@@ -378,8 +378,8 @@ TEST(EpipolarCost, IsZeroAtTheEpipoles) {
   Random random(7);
   Rig rig;
   rig.cameras.resize(2);
-  rig.cameras[0].intrinsics = {400, 420, 320, 240, 640, 480};
-  rig.cameras[1].intrinsics = {500, 450, 310, 250, 640, 480};
+  rig.cameras[0].intrinsics = Camera::Pinhole(400, 420, 320, 240, 640, 480);
+  rig.cameras[1].intrinsics = Camera::Pinhole(500, 450, 310, 250, 640, 480);
   Pose forward;
   forward.t = {0, 0, -1};
   Match intra, inter;
@@ -457,7 +457,7 @@ TEST(EpipolarCost, TwoEqualPosesAreNoUsableStart) {
 TEST(EpipolarCost, StaysFiniteBesideTheEpipoleAndBesideZero) {
   Rig rig;
   rig.cameras.resize(1);
-  rig.cameras[0].intrinsics = {400, 420, 0, 0, 640, 480};
+  rig.cameras[0].intrinsics = Camera::Pinhole(400, 420, 0, 0, 640, 480);
   const Form form = {false, false};
   for (double size = 1.0; size > 1e-300; size *= 1e-3) {
     Match beside, away;
@@ -545,7 +545,7 @@ TEST(EpipolarCost, BadArgumentsGiveNull) {
       }
     }
     Rig focal = rig, rotation = rig;
-    focal.cameras[0].intrinsics.fx = 0.0;
+    focal.cameras[0].intrinsics.parameters[0] = 0.0;
     rotation.cameras[0].Q *= 2.0;
     EXPECT_EQ(MakeCost(form, focal, good, 1.0, kOrder), nullptr);
     EXPECT_EQ(MakeCost(form, rotation, good, 1.0, kOrder), nullptr);

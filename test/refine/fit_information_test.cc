@@ -12,6 +12,7 @@
 #include "rigel/core/epipolar.h"
 #include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/least_squares/uncertainty.h"
+#include "rigel/test/core/pinhole.h"
 #include "rigel/test/refine/pixel_noise.h"
 #include "rigel/test/refine/refine_scene.h"
 
@@ -141,7 +142,7 @@ std::vector<Match> LandmarkMatches(const FramePair& pair, int num_points, Random
   std::vector<Match> matches;
   const auto project = [&](int k, const Eigen::Vector3d& x) {
     const RigCamera& camera = pair.rig.cameras[k];
-    return camera.intrinsics.Project(camera.Q.transpose() * (x - camera.s));
+    return ProjectPinhole(camera.intrinsics, camera.Q.transpose() * (x - camera.s));
   };
   for (int n = 0; n < num_points; ++n) {
     const double z = random->Uniform(3, 20);
@@ -357,8 +358,8 @@ TEST(FitInformation, CalibrationErrorsMoveTheMotionAsStated) {
           } else if (error < 6) {
             camera.s += step * unit;
           } else {
-            camera.intrinsics.fx *= 1.0 + step;
-            camera.intrinsics.fy *= 1.0 + step;
+            camera.intrinsics.parameters[0] *= 1.0 + step;
+            camera.intrinsics.parameters[1] *= 1.0 + step;
           }
           moved[side] = *pair.truth;
           RefinePair(options, wrong, &moved[side]);

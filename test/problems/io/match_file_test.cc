@@ -21,10 +21,10 @@ TEST(MatchFile, ReadsEveryField) {
   EXPECT_EQ(pair.sequence, "loop-06");
   ASSERT_EQ(pair.rig.size(), 2);
   const RigCamera& c0 = pair.rig.cameras[0];
-  EXPECT_EQ(c0.intrinsics.fx, 700.5);
-  EXPECT_EQ(c0.intrinsics.fy, 701);
-  EXPECT_EQ(c0.intrinsics.cx, 600);
-  EXPECT_EQ(c0.intrinsics.cy, 180.25);
+  EXPECT_EQ(c0.intrinsics.fx(), 700.5);
+  EXPECT_EQ(c0.intrinsics.fy(), 701);
+  EXPECT_EQ(c0.intrinsics.cx(), 600);
+  EXPECT_EQ(c0.intrinsics.cy(), 180.25);
   EXPECT_EQ(c0.intrinsics.width, 1226);
   EXPECT_EQ(c0.intrinsics.height, 370);
   EXPECT_EQ(c0.Q, Eigen::Matrix3d::Identity());

@@ -46,10 +46,10 @@ TEST(RigFile, ReadsEveryField) {
   EXPECT_EQ(file.num_undistorted, 1);
   ASSERT_EQ(file.rig.size(), 2);
   const RigCamera& camera = file.rig.cameras[0];
-  EXPECT_EQ(camera.intrinsics.fx, 700);
-  EXPECT_EQ(camera.intrinsics.fy, 701);
-  EXPECT_EQ(camera.intrinsics.cx, 320);
-  EXPECT_EQ(camera.intrinsics.cy, 240);
+  EXPECT_EQ(camera.intrinsics.fx(), 700);
+  EXPECT_EQ(camera.intrinsics.fy(), 701);
+  EXPECT_EQ(camera.intrinsics.cx(), 320);
+  EXPECT_EQ(camera.intrinsics.cy(), 240);
   EXPECT_EQ(camera.intrinsics.width, 640);
   EXPECT_EQ(camera.intrinsics.height, 480);
   EXPECT_EQ(camera.s, Eigen::Vector3d(0.5, -0.1, 2));
@@ -57,7 +57,7 @@ TEST(RigFile, ReadsEveryField) {
   Eigen::Matrix3d Q;
   Q << 1, 0, 0, 0, -0.28, -0.96, 0, 0.96, -0.28;
   EXPECT_LT((camera.Q - Q).cwiseAbs().maxCoeff(), 1e-15);
-  EXPECT_EQ(file.rig.cameras[1].intrinsics.cy, 4);
+  EXPECT_EQ(file.rig.cameras[1].intrinsics.cy(), 4);
 }
 
 TEST(RigFile, ReadsTheErrorAndTheTimeOfACamera) {
@@ -93,11 +93,11 @@ TEST(RigFile, PinholePartOfEachModel) {
     SCOPED_TRACE(c.keys);
     const RigFile file = MustRead(OneCamera(c.keys));
     ASSERT_EQ(file.rig.size(), 1);
-    const PinholeCamera& camera = file.rig.cameras[0].intrinsics;
-    EXPECT_EQ(camera.fx, 7);
-    EXPECT_EQ(camera.fy, c.fy);
-    EXPECT_EQ(camera.cx, 3);
-    EXPECT_EQ(camera.cy, c.cy);
+    const Camera& camera = file.rig.cameras[0].intrinsics;
+    EXPECT_EQ(camera.fx(), 7);
+    EXPECT_EQ(camera.fy(), c.fy);
+    EXPECT_EQ(camera.cx(), 3);
+    EXPECT_EQ(camera.cy(), c.cy);
     EXPECT_EQ(file.num_undistorted, c.undistorted);
   }
 }

@@ -29,7 +29,7 @@ StreetOptions Surround(int num_cameras) {
   options.axes.forward = Eigen::Vector3d::UnitX();
   for (int k = 0; k < num_cameras; ++k) {
     RigCamera camera;
-    camera.intrinsics = {1000.0, 1000.0, 640.0, 480.0, 1280, 960};
+    camera.intrinsics = Camera::Pinhole(1000.0, 1000.0, 640.0, 480.0, 1280, 960);
     const Eigen::Matrix3d turn = ExpSO3(2.0 * kPi * k / num_cameras * Eigen::Vector3d::UnitZ());
     camera.Q << 0, 0, 1, -1, 0, 0, 0, -1, 0;  // its axes in the body, looking ahead
     camera.Q = turn * camera.Q;
@@ -57,7 +57,7 @@ Eigen::Vector3d PointOf(const FramePair& pair, size_t k, Depths* depths) {
   EXPECT_NEAR(GecTripleProduct(*pair.truth, rays), 0.0, 1e-11);
   EXPECT_TRUE(TriangulateDepths(*pair.truth, rays, depths));
   const RigCamera& camera = pair.rig.cameras[match.camera1];
-  const Eigen::Vector3d ray = camera.Q * camera.intrinsics.Normalize(match.pixel1);
+  const Eigen::Vector3d ray = camera.Q * AlongRay(camera.intrinsics, match.pixel1);
   return camera.s + depths->d1 * ray.normalized();
 }
 

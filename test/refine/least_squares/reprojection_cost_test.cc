@@ -32,7 +32,7 @@ Point RandomPoint(uint64_t seed) {
     p.point = {random.Uniform(-2, 2), random.Uniform(-2, 2), random.Uniform(0.02, 0.5)};
     const RigCamera& c1 = p.rig.cameras[p.match.camera1];
     const RigCamera& c2 = p.rig.cameras[p.match.camera2];
-    const Eigen::Vector3d X = c1.Q * c1.intrinsics.Normalize(p.match.pixel1) / p.point[2] + c1.s;
+    const Eigen::Vector3d X = c1.Q * AlongRay(c1.intrinsics, p.match.pixel1) / p.point[2] + c1.s;
     const Eigen::Vector3d y = c2.Q.transpose() * (p.pose * X - c2.s);
     if (y.z() > 0.5 && y.head<2>().norm() < 3 * y.z()) return p;
   }
@@ -94,7 +94,7 @@ TEST(ReprojectionCost, APointInThePlaneOfTheCameraIsRefused) {
   p.match.camera2 = p.match.camera1;
   RigCamera& camera = p.rig.cameras[p.match.camera1];
   // Turned by a right angle about x: the ray of the principal point lies in the plane.
-  p.match.pixel1 = {camera.intrinsics.cx, camera.intrinsics.cy};
+  p.match.pixel1 = {camera.intrinsics.cx(), camera.intrinsics.cy()};
   p.pose.R = camera.Q * ExpSO3(0.5 * M_PI * Eigen::Vector3d::UnitX()) * camera.Q.transpose();
   const ReprojectionCost cost(p.rig, p.match, p.pose, basis, 6, 1.0);
   const double motion[6] = {};
