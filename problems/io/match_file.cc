@@ -132,8 +132,12 @@ class Parser : private MatchLines {
     camera_usage_ = UsageOf(c.model);
     SetUsage(camera_usage_);
     if (!CheckColumns(kCameraColumns + num_parameters)) return false;
+    std::string_view names = CameraParameterNames(c.model);
     for (size_t k = 0; k < num_parameters; ++k) {
-      if (!Number(3 + k, &c.parameters[k])) return false;
+      const bool is_focal_length = names.front() == 'f';
+      double* const value = &c.parameters[k];
+      if (!(is_focal_length ? PositiveNumber(3 + k, value) : Number(3 + k, value))) return false;
+      names.remove_prefix(std::min(names.find(' ') + 1, names.size()));
     }
     std::string what;
     if (!c.IsValid(&what)) return Fail(what);

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "rigel/core/epipolar.h"
+#include "rigel/test/core/lens_rig.h"
 #include "rigel/test/core/random_vector.h"
 #include "rigel/test/refine/jet_geometry.h"
 #include "rigel/test/refine/refine_scene.h"
@@ -322,6 +323,45 @@ TEST(EpipolarCost, JacobianPassesGradientChecker) {
       }
     }
   }
+}
+
+TEST(EpipolarCost, WorksWithAnyLens) {
+  Random random(14);
+  ceres::NumericDiffOptions numeric;
+  numeric.ridders_relative_initial_step_size = 1e-4;
+  for (int number = 0; number < 18; ++number) {
+    const LensRig lenses = MakeLensRig(number, &random);
+    const Pose pose = RandomPose(2, &random);
+    for (const Match& m : UnrelatedLensMatches(lenses, 9, &random)) {
+      const double expected = SampsonError(pose, lenses.rig, m) / 0.5;
+      for (const Form& form : kForms) {
+        const QuaternionOrder order = kOrders[number % 2];
+        const Blocks blocks = MakeBlocks(form, order, pose, lenses.rig, m, &random);
+        const auto cost = MakeCost(form, lenses.rig, m, 0.5, order);
+        ASSERT_NE(cost, nullptr);
+        double r = 0.0;
+        ASSERT_TRUE(cost->Evaluate(blocks.Pointers().data(), &r, nullptr));
+        EXPECT_NEAR(r, expected, 1e-9 * (1 + std::abs(expected)));
+        const auto manifold = MakeManifold(order);
+        std::vector<const ceres::Manifold*> manifolds(blocks.size(), nullptr);
+        for (int k = 0; k < blocks.size(); k += 2) manifolds[k] = manifold.get();
+        const ceres::GradientChecker checker(cost.get(), &manifolds, numeric);
+        EXPECT_TRUE(checker.Probe(blocks.Pointers().data(), 1e-5, nullptr))
+            << Name(form, m, order) << ", rig " << number;
+      }
+    }
+  }
+}
+
+TEST(EpipolarCost, APixelWithoutARayHasNone) {
+  Rig rig;
+  rig.cameras.resize(1);
+  rig.cameras[0].intrinsics = {CameraModel::kOpencvFisheye, {300, 300, 320, 240}, 640, 480};
+  Match m;
+  m.pixel1 = m.pixel2 = {320, 240};
+  EXPECT_NE(MakeCost(kForms[0], rig, m, 1.0, QuaternionOrder::kCeres), nullptr);
+  m.pixel2.x() += 300 * 3.2;
+  EXPECT_EQ(MakeCost(kForms[0], rig, m, 1.0, QuaternionOrder::kCeres), nullptr);
 }
 
 // The residual does not depend on the length of q, so along q its derivative is zero.

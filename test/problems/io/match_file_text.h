@@ -87,10 +87,7 @@ inline void ExpectSame(const FramePair& a, const FramePair& b) {
   for (int k = 0; k < a.rig.size(); ++k) {
     const RigCamera& ca = a.rig.cameras[k];
     const RigCamera& cb = b.rig.cameras[k];
-    EXPECT_EQ(ca.intrinsics.fx(), cb.intrinsics.fx());
-    EXPECT_EQ(ca.intrinsics.fy(), cb.intrinsics.fy());
-    EXPECT_EQ(ca.intrinsics.cx(), cb.intrinsics.cx());
-    EXPECT_EQ(ca.intrinsics.cy(), cb.intrinsics.cy());
+    EXPECT_TRUE(SameLens(ca.intrinsics, cb.intrinsics));
     EXPECT_EQ(ca.intrinsics.width, cb.intrinsics.width);
     EXPECT_EQ(ca.intrinsics.height, cb.intrinsics.height);
     EXPECT_LT((ca.Q - cb.Q).cwiseAbs().maxCoeff(), kRotationTolerance);

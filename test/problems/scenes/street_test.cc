@@ -122,6 +122,41 @@ TEST(Street, AllCamerasHaveMatchesAndNeighboursShareThem) {
   for (int k = 0; k < 6; ++k) EXPECT_GT((count[{k, k}]), 50) << k;
 }
 
+// Raw pixels, with rays beyond 90 degrees. The image is larger than the circle of the lens, whose
+// last pixels have no ray.
+TEST(Street, FisheyesSeeWhatTheirModelsSee) {
+  StreetOptions options = Surround(4);
+  options.outlier_share = 0.3;
+  options.inter_share = 0.2;
+  options.noise_px = 0.5;
+  for (RigCamera& camera : options.rig.cameras) {
+    // a - a^3 / 18 has its maximum at 140 degrees, 653 pixels from the centre.
+    camera.intrinsics = {CameraModel::kOpencvFisheye, {400, 400, 640, 480, -1.0 / 18.0}, 1280, 960};
+  }
+  int num_beyond_90 = 0;
+  for (int index = 0; index < 5; ++index) {
+    const FramePair pair = Street(options, index);
+    for (size_t k = 0; k < pair.matches.size(); ++k) {
+      const Match& match = pair.matches[k];
+      const std::array<double, 4>& exact = pair.columns.exact[k];
+      const Eigen::Vector3d ray =
+          AlongRay(options.rig.cameras[match.camera2].intrinsics, {exact[2], exact[3]});
+      EXPECT_TRUE(ray.allFinite());  // of outliers, too
+      if (pair.columns.inlier[k] == 0) continue;
+      Match there = match;
+      there.pixel1 = {exact[0], exact[1]};
+      there.pixel2 = {exact[2], exact[3]};
+      EXPECT_LT(std::abs(SampsonError(*pair.truth, pair.rig, there)), 1e-6);
+      Depths depths;
+      EXPECT_TRUE(TriangulateDepths(*pair.truth, MakeRayPair(pair.rig, there), &depths));
+      EXPECT_TRUE(depths.BothPositive());
+      EXPECT_TRUE(options.rig.cameras[0].intrinsics.InImage({exact[2], exact[3]}));
+      num_beyond_90 += ray.z() < 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(num_beyond_90, 0);
+}
+
 TEST(Street, MotionIsOnAnArcWithBumps) {
   StreetOptions options = Surround(2);
   options.num_matches = 5;

@@ -11,6 +11,7 @@
 
 #include "rigel/core/epipolar.h"
 #include "rigel/core/rays.h"
+#include "rigel/test/core/lens_rig.h"
 #include "rigel/test/core/random_vector.h"
 #include "rigel/test/refine/jet_geometry.h"
 #include "rigel/test/refine/refine_scene.h"
@@ -146,8 +147,8 @@ TEST(EpipolarResiduals, SampsonAndAngularDivideByTheGradientOfTheConstraint) {
       const double r = by_pixels.a / by_pixels.v.norm();
       EXPECT_NEAR(Value(sampson, pose, k), r, 1e-9 * (1 + std::abs(r)));
 
-      const Eigen::Vector3d x_i = a.Normalize(m.pixel1).normalized();
-      const Eigen::Vector3d x_j = b.Normalize(m.pixel2).normalized();
+      const Eigen::Vector3d x_i = AlongRay(a, m.pixel1).normalized();
+      const Eigen::Vector3d x_j = AlongRay(b, m.pixel2).normalized();
       const Eigen::Matrix<double, 3, 2> T_i = TangentBasis(x_i);
       const Eigen::Matrix<double, 3, 2> T_j = TangentBasis(x_j);
       Vector3<Jet> d_i, d_j;
@@ -229,6 +230,36 @@ TEST(EpipolarResiduals, JacobianMatchesNumericDifferentiationAlongAnyBasis) {
         }
         EXPECT_LT((analytic - numeric).norm(), 1e-6 * numeric.norm())
             << "pose " << i << ", kind " << static_cast<int>(kind) << ", match " << k;
+      }
+    }
+  }
+}
+
+TEST(EpipolarResiduals, JacobianOfAnyLensMatchesNumericDifferentiation) {
+  Random random(8);
+  std::vector<GroupLinearization> groups;
+  MotionBasis identity;
+  identity.setIdentity(6, 6);
+  for (int number = 0; number < 18; ++number) {
+    const LensRig lenses = MakeLensRig(number, &random);
+    const GroupedMatches matches(lenses.rig, UnrelatedLensMatches(lenses, 9, &random));
+    const Pose pose = RandomPose(2, &random);
+    for (const ResidualKind kind : kKinds) {
+      const EpipolarResiduals residuals(matches, kind);
+      residuals.Linearize(pose, &identity, &groups);
+      for (int k = 0; k < matches.size(); ++k) {
+        Vector6d row, numeric;
+        residuals.Evaluate(groups, k, 6, row.data());
+        for (int c = 0; c < 6; ++c) {
+          numeric(c) = CentralDifference(
+              [&](double h) {
+                const Vector6d step = h * Vector6d::Unit(c);
+                return Eigen::Matrix<double, 1, 1>(Value(residuals, Perturbed(pose, step), k));
+              },
+              1e-4)(0);
+        }
+        EXPECT_LT((row - numeric).norm(), 1e-6 * numeric.norm())
+            << "rig " << number << ", kind " << static_cast<int>(kind) << ", match " << k;
       }
     }
   }
