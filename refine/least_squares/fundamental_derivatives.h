@@ -31,7 +31,7 @@ ByMotionMatrix FundamentalByMotion(const GroupedMatches& matches, const MatchGro
                                    const Pose& pose, bool of_rays);
 
 // By the errors of camera1, then those of camera2. They add up if that is the same camera. The
-// focal lengths are those of pinholes: of other cameras they do not act through F, and count as
+// focal lengths are those of pinholes: of other lenses they do not act through F, and count as
 // exact.
 ByCalibrationMatrix FundamentalByCalibration(const GroupedMatches& matches, const MatchGroup& group,
                                              const Pose& pose);
