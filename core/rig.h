@@ -20,7 +20,7 @@ struct RigCamera {
   // The stated error of the calibration, 1 sigma. 0: nothing is stated.
   double rotation_sigma = 0.0;  // of Q, radians per axis
   double position_sigma = 0.0;  // of s, metres per axis
-  double focal_sigma = 0.0;     // of both focal lengths of a pinhole alike, as a fraction
+  double focal_sigma = 0.0;     // of both focal lengths alike, as a fraction
   // Seconds that the camera fires after the times of the pair. Negative: before them.
   double time_offset = 0.0;
 };

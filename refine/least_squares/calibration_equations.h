@@ -1,5 +1,6 @@
 // The normal equations of the motion and the errors of the calibration (fundamental_derivatives.h).
-// Both change the Sampson errors through F alone. So the sums of SumSampson() serve both.
+// Of pinholes both change the Sampson errors through F alone. So the sums of SumSampson() serve
+// both. A stated error of the focal lengths of another lens changes them row by row.
 #ifndef RIGEL_REFINE_LEAST_SQUARES_CALIBRATION_EQUATIONS_H_
 #define RIGEL_REFINE_LEAST_SQUARES_CALIBRATION_EQUATIONS_H_
 

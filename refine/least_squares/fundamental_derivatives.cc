@@ -84,4 +84,9 @@ ByCalibrationMatrix FundamentalByCalibration(const GroupedMatches& matches, cons
   return D;
 }
 
+Eigen::Vector3d FocalShift(const RigCamera& camera, const Pixel& pixel) {
+  const Camera& c = camera.intrinsics;
+  return -(RowPointOf(camera, pixel).J * (pixel - Pixel(c.cx(), c.cy())));
+}
+
 }  // namespace rigel

@@ -327,11 +327,24 @@ TEST(FitInformation, WithoutNoiseTheCovarianceIsThatOfLeastSquares) {
   }
 }
 
+// The same rays through a fisheye in place of camera k.
+void PutFisheye(int k, FramePair* pair) {
+  Camera& camera = pair->rig.cameras[k].intrinsics;
+  const Camera old = camera;
+  camera = {CameraModel::kOpencvFisheye, {600, 600, 601, 183, -0.03, 4e-3}, 1226, 370};
+  for (Match& match : pair->matches) {
+    if (match.camera1 == k) Project(camera, AlongRay(old, match.pixel1), &match.pixel1);
+    if (match.camera2 == k) Project(camera, AlongRay(old, match.pixel2), &match.pixel2);
+  }
+}
+
 // What the calibration does is linear: the minimum for a rig with a small error against that of the
 // right one.
 TEST(FitInformation, CalibrationErrorsMoveTheMotionAsStated) {
-  for (int index = 0; index < 3; ++index) {
+  for (int index = 0; index < 4; ++index) {
     FramePair pair = ExactPair(150, index);
+    // One fisheye beside a pinhole, then two.
+    for (int k = 0; k < index - 1; ++k) PutFisheye(k, &pair);
     for (RigCamera& camera : pair.rig.cameras) {
       camera.rotation_sigma = 1e-3;
       camera.position_sigma = 1e-2;

@@ -44,8 +44,8 @@ T Residual(ResidualKind kind, const Matrix3<T>& R, const Vector3<T>& t, const Ri
   const Camera& cj = j.intrinsics;
   const Vector3<T> b = R * i.s.cast<T>() + t - j.s.cast<T>();
   const Matrix3<T> E = j.Q.transpose().cast<T>() * Cross<T>(b) * R * i.Q.cast<T>();
-  const Vector3<T> x_i = ci.Normalize(m.pixel1).normalized().cast<T>();
-  const Vector3<T> x_j = cj.Normalize(m.pixel2).normalized().cast<T>();
+  const Vector3<T> x_i = AlongRay(ci, m.pixel1).normalized().cast<T>();
+  const Vector3<T> x_j = AlongRay(cj, m.pixel2).normalized().cast<T>();
   switch (kind) {
     case ResidualKind::kAlgebraic:
       return x_j.dot(E * x_i);
