@@ -116,7 +116,7 @@ class Parser : private MatchLines {
   }
 
   bool Camera() {
-    constexpr size_t kLeast = 3;
+    constexpr size_t kLeast = 3;  // words: with the model, which says how many there are
     if (num_columns() < kLeast) {
       return Fail("no camera model, expected '" + std::string(kKeywords[kCamera].usage) + "'");
     }

@@ -341,10 +341,10 @@ void PutFisheye(int k, FramePair* pair) {
 // What the calibration does is linear: the minimum for a rig with a small error against that of the
 // right one.
 TEST(FitInformation, CalibrationErrorsMoveTheMotionAsStated) {
-  for (int index = 0; index < 4; ++index) {
-    FramePair pair = ExactPair(150, index);
-    // One fisheye beside a pinhole, then two.
-    for (int k = 0; k < index - 1; ++k) PutFisheye(k, &pair);
+  // Of the two cameras none, one and both are fisheyes.
+  for (int index = 0; index < 9; ++index) {
+    FramePair pair = ExactPair(150, index / 3);
+    for (int k = 0; k < index % 3; ++k) PutFisheye(k, &pair);
     for (RigCamera& camera : pair.rig.cameras) {
       camera.rotation_sigma = 1e-3;
       camera.position_sigma = 1e-2;

@@ -154,9 +154,10 @@ inline FramePair RandomPair(uint64_t seed) {
   pair.sequence = "s" + std::to_string(seed);
   pair.rig.cameras.resize(1 + random.Index(12));
   for (RigCamera& camera : pair.rig.cameras) {
-    Camera& c = camera.intrinsics;
-    c = {random.Uniform(1, 1e4),    random.Uniform(1, 1e4),   number(), number(),
-         1 + random.Index(1 << 30), 1 + random.Index(1 << 30)};
+    camera.intrinsics = {CameraModel::kPinhole,
+                         {random.Uniform(1, 1e4), random.Uniform(1, 1e4), number(), number()},
+                         1 + random.Index(1 << 30),
+                         1 + random.Index(1 << 30)};
     const Pose p = pose();
     camera.Q = p.R;
     camera.s = p.t;
