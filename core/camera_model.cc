@@ -239,14 +239,10 @@ bool Unproject(const Camera& camera, const Pixel& pixel, Eigen::Vector3d* ray, M
       !lens.plane.ToRay(m, &found)) {
     return false;
   }
+  // Is the ray in the domain?
   Pixel again;
   Matrix2x3d P;
   if (!ProjectThrough(lens, found, &again, J == nullptr ? nullptr : &P)) return false;
-  // Relative to the focal length and the distance from the centre: thousands of times rounding,
-  // and far less than anyone measures.
-  constexpr double kMostError = 1e-11;
-  const double scale = lens.focal.maxCoeff() + (pixel - lens.centre).norm() + lens.centre.norm();
-  if (!((again - pixel).norm() <= kMostError * scale)) return false;
   if (J != nullptr) {
     // The two columns are perpendicular to the ray, and P times them is I.
     const Eigen::Vector3d p1 = P.row(0);

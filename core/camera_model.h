@@ -4,27 +4,26 @@
 // pixel. A point X is mapped to a plane (core/lens_plane.h), distorted there
 // (core/lens_distortion.h) and scaled: pixel = (fx u + cx, fy v + cy).
 //
-//   model                  parameters                                plane         distortion
-//   pinhole                fx fy cx cy                               perspective
-//   simple_pinhole         f cx cy                                   perspective
-//   simple_radial          f cx cy k                                 perspective   n = k
-//   radial                 f cx cy k1 k2                             perspective   n = k1 k2
-//   opencv                 fx fy cx cy k1 k2 p1 p2                   perspective   n = k1 k2, p
-//   full_opencv            fx fy cx cy k1 k2 p1 p2 k3 k4 k5 k6       perspective   n = k1 k2 k3,
-//                                                                                  d = k4 k5 k6, p
-//   opencv_fisheye         fx fy cx cy k1 k2 k3 k4                   angle         n = k1 .. k4
-//   simple_radial_fisheye  f cx cy k                                 angle         n = k
-//   radial_fisheye         f cx cy k1 k2                             angle         n = k1 k2
-//   thin_prism_fisheye     fx fy cx cy k1 k2 p1 p2 k3 k4 sx1 sy1     angle         n = k1 .. k4, p,
-//   s fov                    fx fy cx cy omega                         angle omni xi fx fy cx cy k1
-//   k2 p1 p2                sphere        n = k1 k2, p double_sphere          xi alpha fx fy cx cy
-//   double sphere eucm                   alpha beta fx fy cx cy                    enhanced
+//   model                  parameters                              plane          distortion
+//   pinhole                fx fy cx cy                             perspective
+//   simple_pinhole         f cx cy                                 perspective
+//   simple_radial          f cx cy k                               perspective    n
+//   radial                 f cx cy k1 k2                           perspective    n
+//   opencv                 fx fy cx cy k1 k2 p1 p2                 perspective    n, p
+//   full_opencv            fx fy cx cy k1 k2 p1 p2 k3 k4 k5 k6     perspective    n, p, d = k4..k6
+//   opencv_fisheye         fx fy cx cy k1 k2 k3 k4                 angle          n
+//   simple_radial_fisheye  f cx cy k                               angle          n
+//   radial_fisheye         f cx cy k1 k2                           angle          n
+//   thin_prism_fisheye     fx fy cx cy k1 k2 p1 p2 k3 k4 sx1 sy1   angle          n, p, s
+//   fov                    fx fy cx cy omega                       angle
+//   omni                   xi fx fy cx cy k1 k2 p1 p2              sphere         n, p
+//   double_sphere          xi alpha fx fy cx cy                    double sphere
+//   eucm                   alpha beta fx fy cx cy                  enhanced
 //
-// Names and orders of the first eleven are COLMAP's (src/colmap/sensor/models.h of 4.2.0.dev0, and
-// the same in 3.8), in lower case. COLMAP's pixels, and with them cx and cy, are larger by 0.5. It
-// refuses rays beyond 90 degrees; here they go on along the same formula. The last three are
-// Kalibr's (aslam_cameras, OmniProjection.hpp and its like) in its orders; its pinhole-radtan is
-// opencv, its pinhole-equi opencv_fisheye.
+// Names and orders of the first eleven are COLMAP's (sensor/models of 4.2.0.dev0, and the same in
+// 3.8), in lower case. COLMAP's pixels, and with them cx and cy, are larger by 0.5. It refuses rays
+// beyond 90 degrees; here they go on along the same formula. The last three are Kalibr's
+// (aslam_cameras), in its orders; its pinhole-radtan is opencv, its pinhole-equi opencv_fisheye.
 //
 // Nothing here allocates, throws or logs. Points and pixels outside a model's domain are refused.
 // So are numbers that are not finite.
@@ -74,9 +73,9 @@ struct Camera {
   int width = 0;                                    // pixels; both 0: unknown
   int height = 0;
 
-  // False with a message if a parameter is not finite or out of its range (f, fx, fy, beta > 0,
-  // 0 < omega < pi, alpha in [0, 1], xi of omni >= 0, of double_sphere in (-1, 1]), or if the
-  // size is negative.
+  // False with a message if a parameter is not finite or out of its range, or the size is
+  // negative. f, fx, fy and beta are positive, alpha is 0 to 1, omega is between 0 and pi. xi is
+  // not negative, of double_sphere more than -1 and at most 1.
   bool IsValid(std::string* error) const;
 };
 static_assert(kSameLayoutEverywhere<Camera>, "no member of Camera may be aligned");

@@ -25,6 +25,12 @@ bool FramePair::IsValid(std::string* error) const {
       return false;
     }
   }
+  for (int k = 0; k < rig.size(); ++k) {
+    if (rig.cameras[k].time_offset == 0 || Interval() > 0) continue;
+    *error = "camera " + std::to_string(k) +
+             " fires at another time: that needs the two times of the pair, in order";
+    return false;
+  }
   if (truth && !(truth->AllFinite() && IsRotation(truth->R))) {
     *error = "the truth is not a finite motion with a rotation matrix";
     return false;

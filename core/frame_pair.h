@@ -27,8 +27,12 @@ struct FramePair {
   // errors do.
   std::optional<double> noise_px;
 
+  // Seconds between the times; 0 if they are not known.
+  double Interval() const { return time1 && time2 ? *time2 - *time1 : 0.0; }
+
   // False with a message if the rig, the prior or a column is invalid or a match names a camera
-  // that is not there. Pixels, times, truth and noise_px must be finite, noise_px also positive.
+  // that is not there, or if a camera fires at another time and time2 is not known to be after
+  // time1. Pixels, times, truth and noise_px must be finite, noise_px also positive.
   // The score of a match may be NaN: it is then the worst.
   bool IsValid(std::string* error) const;
 };

@@ -13,10 +13,6 @@ namespace {
 
 using RowMajor3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-Eigen::Vector3d BaselineOf(const MatchGroup& group, const Rig& rig, const Pose& pose) {
-  return Baseline(pose, rig.cameras[group.camera1].s, rig.cameras[group.camera2].s);
-}
-
 // Positions of the matches sorted by camera1, then camera2: where they are not yet, by a stable
 // counting sort, camera2 first.
 std::vector<int> GroupedOrder(int num_cameras, const std::vector<Match>& matches) {
@@ -46,7 +42,7 @@ double MedianSigma(const MatchColumns& columns) {
 }  // namespace
 
 GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches,
-                               const MatchColumns& columns)
+                               const MatchColumns& columns, double interval)
     : rig_(rig), original_(GroupedOrder(rig.size(), matches)) {
   const std::vector<double>* sigmas[2] = {&columns.sigma1, &columns.sigma2};
   general_ = !sigmas[0]->empty() || !sigmas[1]->empty();
@@ -54,6 +50,10 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
 
   for (const RigCamera& camera : rig.cameras) {
     unproject_.emplace_back(camera.Q * Unprojection(camera));
+  }
+  if (interval > 0) {
+    for (const RigCamera& camera : rig.cameras) later_.push_back(camera.time_offset / interval);
+    if (std::all_of(later_.begin(), later_.end(), [](double a) { return a == 0; })) later_.clear();
   }
   const size_t n = matches.size();
   matches_.reserve(n);
@@ -136,6 +136,7 @@ GroupedMatches GroupedMatches::Subset(const std::vector<size_t>& taken) const {
   GroupedMatches subset;
   subset.rig_ = rig_;
   subset.unproject_ = unproject_;
+  subset.later_ = later_;
   subset.original_.resize(count);
   std::iota(subset.original_.begin(), subset.original_.end(), 0);
   subset.matches_.reserve(count);
@@ -204,15 +205,46 @@ GroupMotion GroupedMatches::MotionOf(const MatchGroup& group, const Pose& pose,
                                      double threshold_px) const {
   GroupMotion motion;
   Eigen::Map<RowMajor3d>(motion.R) = pose.R;
-  Eigen::Map<Eigen::Vector3d>(motion.b) = BaselineOf(group, rig_, pose);
+  // Of depths only signs are wanted: that cameras fire at other times hardly changes them.
+  Eigen::Map<Eigen::Vector3d>(motion.b) =
+      Baseline(pose, rig_.cameras[group.camera1].s, rig_.cameras[group.camera2].s);
   const double min_sin_parallax = DecidedParallax(group, threshold_px);
   motion.min_sin2 = min_sin_parallax * min_sin_parallax;
   return motion;
 }
 
+GroupedMatches::Places GroupedMatches::PlacesOf(const MatchGroup& group, const Pose& pose,
+                                                bool of_rays) const {
+  const RigCamera& c1 = rig_.cameras[group.camera1];
+  const RigCamera& c2 = rig_.cameras[group.camera2];
+  Places places = {of_rays ? c1.Q : unproject_[group.camera1],
+                   of_rays ? c2.Q : unproject_[group.camera2], c1.s, c2.s};
+  if (!HasTimes()) return places;
+  const Vector6d screw = ScrewOf(pose);
+  const Pose part1 = PartOfScrew(screw, -later_[group.camera1]);
+  const Pose part2 =
+      group.camera1 == group.camera2 ? part1 : PartOfScrew(screw, -later_[group.camera2]);
+  return {part1.R * places.A1, part2.R * places.A2, part1 * c1.s, part2 * c2.s};
+}
+
+Matrix6d GroupedMatches::PlaceByMotion(int camera, const Pose& pose) const {
+  if (later_.empty()) return Matrix6d::Zero();
+  const Pose part = PartOfMotion(pose, -later_[camera]);
+  Matrix6d by_motion = PartOfMotionJacobian(pose, -later_[camera]);
+  // s = R s_k + t of the part.
+  by_motion.bottomRows<3>() -=
+      (Skew(part.R * rig_.cameras[camera].s) * by_motion.topRows<3>()).eval();
+  return by_motion;
+}
+
 Eigen::Matrix3d GroupedMatches::Fundamental(const MatchGroup& group, const Pose& pose) const {
-  // Of EssentialMatrix(), with what is the same for all poses made once.
-  const Eigen::Vector3d b = BaselineOf(group, rig_, pose);
+  if (HasTimes()) {
+    const Places at = PlacesOf(group, pose, false);
+    return at.A2.transpose() * Skew(Baseline(pose, at.s1, at.s2)) * pose.R * at.A1;
+  }
+  // The same, as RANSAC calls it for each hypothesis.
+  const Eigen::Vector3d b =
+      Baseline(pose, rig_.cameras[group.camera1].s, rig_.cameras[group.camera2].s);
   const Eigen::Matrix3d RA = pose.R * unproject_[group.camera1];
   Eigen::Matrix3d bRA;
   for (int k = 0; k < 3; ++k) bRA.col(k) = b.cross(RA.col(k));

@@ -33,8 +33,10 @@ class GroupedMatches {
   // `matches` must name cameras of `rig` only and have finite pixels. Copies what it needs.
   // Of `columns`, sigma1, sigma2 and landmark are used: with sigmas all errors are those that a
   // pixel of the median sigma would have.
+  // `interval` is the time between the views, seconds; 0 if it is not known, and the time offsets
+  // of the cameras are then left out.
   GroupedMatches(const Rig& rig, const std::vector<Match>& matches,
-                 const MatchColumns& columns = {});
+                 const MatchColumns& columns = {}, double interval = 0.0);
 
   // The same matches with the origin of the rig's body frame moved (rig_centre.h).
   GroupedMatches WithOrigin(const Eigen::Vector3d& origin) const;
@@ -56,8 +58,19 @@ class GroupedMatches {
   // kind only. The draw is the same in each call.
   GroupedMatches DrawnSubset(size_t count) const;
 
-  // Q U: the points of rows (row_point.h) to directions in the body frame.
-  const Eigen::Matrix3d& UnprojectionToBody(int camera) const { return unproject_[camera]; }
+  // Where the cameras of a group are if the rig moves by `pose`: A = Q U, which takes the points of
+  // rows (row_point.h) to directions in the body frame, or with `of_rays` Q alone; and s. These are
+  // those of the rig, except if a camera fires a share a of the interval later. The rig moves with
+  // constant velocity, so both views are then those of a camera at PartOfMotion(pose, -a) (Q, s).
+  struct Places {
+    Eigen::Matrix3d A1, A2;
+    Eigen::Vector3d s1, s2;
+  };
+  Places PlacesOf(const MatchGroup& group, const Pose& pose, bool of_rays) const;
+  // True if a camera fires at another time. How its place changes with the motion: (d, e) of
+  // Q <- Exp(d) Q, s <- s + e by those of the motion.
+  bool HasTimes() const { return !later_.empty(); }
+  Matrix6d PlaceByMotion(int camera, const Pose& pose) const;
 
   // Position in the input of the match at grouped position k.
   int original(int k) const { return original_[k]; }
@@ -115,7 +128,8 @@ class GroupedMatches {
   std::vector<Match> matches_;
   std::vector<int64_t> landmarks_;
   std::vector<int> original_;
-  std::vector<Eigen::Matrix3d> unproject_;  // of each camera
+  std::vector<Eigen::Matrix3d> unproject_;  // Q U of each camera
+  std::vector<double> later_;               // a of each camera; empty if all are zero
   // x1 of all, then y1, x2, y2, and what RowArrays::general says, if that is needed; the six
   // coordinates of the directions likewise.
   std::vector<double> rows_, directions_;

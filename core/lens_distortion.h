@@ -13,10 +13,10 @@
 // zero, or at kWidestRadius. Let G(r) = d(r N/D)/dr be the growth at the radius r. In the domain
 //   G(r) > kLeastGrowth + (7 |p| + 2.5 |s|) r,  there and at each smaller r.
 // The mean of G up to r is N/D, so that this bounds N/D as well. Then the symmetric part of the
-// Jacobian is positive definite, by kLeastGrowth at least. Along and across m its tangential part
-// is 2 |p| r (3 cos a, -sin a; -sin a, cos a), its prism part 2 |s| r (cos b, sin b / 2;
-// sin b / 2, 0), for some angles a and b. A disc is convex, so no two of its points have the same
-// image.
+// Jacobian is positive definite, by kLeastGrowth at least. Along and across m its tangential
+// part is 2 |p| r (3 cos a, -sin a; -sin a, cos a) for some angle a. Its prism part is
+// 2 |s| r (cos b, sin b / 2; sin b / 2, 0) for some b. A disc is convex, so no two of its points
+// have the same image.
 #ifndef RIGEL_CORE_LENS_DISTORTION_H_
 #define RIGEL_CORE_LENS_DISTORTION_H_
 

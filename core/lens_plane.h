@@ -19,9 +19,9 @@
 //
 // The domain: rays for which |m| grows with the angle to the axis, where it is continuous from
 // the axis on. kAngle: up to kWidestAngle. kSphere: z > -min(a, 1/a) |X|. For the other two let w =
-// alpha / (1 - alpha) or its inverse, whichever is less: z1 > -w d2 and z > -w d. The bound that
-// Usenko et al. state on z / |X| (their eq. 43-45) lies inside. All bounds but z > 0 are reached to
-// kLeastGrowth, in the sine or cosine that they speak of.
+// alpha / (1 - alpha) or its inverse, whichever is less: z1 > -w d2 and z > -w d. For xi < 0
+// the bound that Usenko et al. state on z / |X| (eq. 43-45) is too wide, by 0.1 degrees at -0.17.
+// All bounds but z > 0 are reached to kLeastGrowth, in the sine or cosine that they speak of.
 #ifndef RIGEL_CORE_LENS_PLANE_H_
 #define RIGEL_CORE_LENS_PLANE_H_
 

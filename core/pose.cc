@@ -101,6 +101,65 @@ Eigen::Matrix3d LeftJacobianSO3(const Eigen::Vector3d& omega) {
   return Eigen::Matrix3d::Identity() + p * W + q * W * W;
 }
 
+namespace {
+
+// ad of the screw (w, v): w x ., and v x . below.
+Matrix6d AdjointOfScrew(const Vector6d& screw) {
+  Matrix6d ad = Matrix6d::Zero();
+  ad.topLeftCorner<3, 3>() = ad.bottomRightCorner<3, 3>() = Skew(screw.head<3>());
+  ad.bottomLeftCorner<3, 3>() = Skew(screw.tail<3>());
+  return ad;
+}
+
+// Exp(screw + d) = Exp(J d) Exp(screw) to first order: sum of ad^n / (n + 1)!. Turns are at most
+// pi, so that later terms are below the rounding.
+Matrix6d LeftJacobianOfScrew(const Vector6d& screw) {
+  constexpr int kTerms = 24;
+  const Matrix6d ad = AdjointOfScrew(screw);
+  Matrix6d term = Matrix6d::Identity(), sum = term;
+  for (int n = 1; n < kTerms; ++n) {
+    term = (ad * term / (n + 1.0)).eval();
+    sum += term;
+  }
+  return sum;
+}
+
+// (d, e) of a pose from the perturbation Exp(d, v) on its left: e = v + d x t.
+Matrix6d FromLeftPerturbation(const Pose& pose) {
+  Matrix6d jacobian = Matrix6d::Identity();
+  jacobian.bottomLeftCorner<3, 3>() = -Skew(pose.t);
+  return jacobian;
+}
+
+}  // namespace
+
+Vector6d ScrewOf(const Pose& motion) {
+  Vector6d screw;
+  screw.head<3>() = LogSO3(motion.R);
+  screw.tail<3>() = LeftJacobianSO3(screw.head<3>()).inverse() * motion.t;
+  return screw;
+}
+
+Pose PartOfScrew(const Vector6d& screw, double share) {
+  if (share == 0) return Pose();
+  const Eigen::Vector3d turn = share * screw.head<3>();
+  return {ExpSO3(turn), LeftJacobianSO3(turn) * (share * screw.tail<3>())};
+}
+
+Pose PartOfMotion(const Pose& motion, double share) {
+  return share == 0 ? Pose() : PartOfScrew(ScrewOf(motion), share);
+}
+
+Matrix6d PartOfMotionJacobian(const Pose& motion, double share) {
+  const Vector6d screw = ScrewOf(motion);
+  const Eigen::Matrix<double, 6, 6> by_screw = share *
+                                               FromLeftPerturbation(PartOfMotion(motion, share)) *
+                                               LeftJacobianOfScrew(share * screw);
+  const Eigen::Matrix<double, 6, 6> motion_by_screw =
+      FromLeftPerturbation(motion) * LeftJacobianOfScrew(screw);
+  return by_screw * motion_by_screw.inverse();
+}
+
 Eigen::Matrix3d SmallestRotation(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const Eigen::Vector3d v = a.cross(b);
   const double c = a.dot(b);

@@ -52,6 +52,19 @@ Eigen::Vector3d LogSO3(const Eigen::Matrix3d& R);
 // Left Jacobian: ExpSO3(omega + d) = ExpSO3(J d) ExpSO3(omega) to first order in d.
 Eigen::Matrix3d LeftJacobianSO3(const Eigen::Vector3d& omega);
 
+// The share of a motion with constant velocity: the angular velocity and that of the origin are
+// constant in the body's own frame, so the body moves on a screw. 1 is all of it, 0 none; it may be
+// negative. Parts of one motion commute.
+Pose PartOfMotion(const Pose& motion, double share);
+
+// The same in two steps, for several parts of one motion: the screw, rotation vector first.
+Vector6d ScrewOf(const Pose& motion);
+Pose PartOfScrew(const Vector6d& screw, double share);
+
+// The perturbation (d, e) of that part by the perturbation of the motion, for R <- Exp(d) R,
+// t <- t + e of both.
+Matrix6d PartOfMotionJacobian(const Pose& motion, double share);
+
 // The smallest rotation M with M a = b for unit vectors a, b; for b = -a a half turn about some
 // axis perpendicular to a.
 Eigen::Matrix3d SmallestRotation(const Eigen::Vector3d& a, const Eigen::Vector3d& b);

@@ -100,22 +100,31 @@ Matrix6d PseudoInformation(const Matrix6d& covariance) {
   return information.allFinite() ? information : Matrix6d(Matrix6d::Zero());
 }
 
+Matrix6d CovarianceOfEdge(const RefineSummary& summary) {
+  if (!summary.covariance) return Matrix6d::Zero();
+  return summary.calibration_covariance
+             ? Matrix6d(*summary.covariance - *summary.calibration_covariance)
+             : *summary.covariance;
+}
+
 Matrix6d InformationMatrix(const RefineSummary& summary, const Pose& f2_from_f1) {
   if (!summary.IsSolutionUsable() || !summary.covariance || !summary.rotation_observable) {
     return Matrix6d::Zero();
   }
+  const Matrix6d of_body = CovarianceOfEdge(summary);
   if (!summary.RigDirectionKnown()) {
-    Matrix6d covariance = *summary.covariance;
+    Matrix6d covariance = of_body;
     covariance.bottomRows<3>().setZero();
     covariance.rightCols<3>().setZero();
     return PseudoInformation(covariance);
   }
-  if (summary.length_held) return InformationWithout(f2_from_f1.t, *summary.covariance);
+  if (summary.length_held) return InformationWithout(f2_from_f1.t, of_body);
   // Of the rig's own motion: where nothing says its length, that has no information.
   const Eigen::Vector3d& point = summary.rig_center;
   const Matrix6d from_body = BodyFromPointJacobian(f2_from_f1.R, -point);
-  const Matrix6d of_rig = summary.rig_covariance.value_or(
-      Matrix6d(from_body * *summary.covariance * from_body.transpose()));
+  const Matrix6d of_rig = summary.rig_covariance && !summary.calibration_covariance
+                              ? *summary.rig_covariance
+                              : Matrix6d(from_body * of_body * from_body.transpose());
   const Matrix6d information = summary.length_sigma <= kMaxLengthSigma
                                    ? PseudoInformation(of_rig)
                                    : InformationWithout(MotionOfPoint(f2_from_f1, point).t, of_rig);
@@ -131,13 +140,11 @@ BetweenFactor G2oEdge(const Pose& f2_from_f1, const Matrix6d& covariance) {
 }
 
 BetweenFactor GtsamBetweenFactor(const Pose& f2_from_f1, const RefineSummary& summary) {
-  return ToGtsam(f2_from_f1, summary.covariance.value_or(Matrix6d(Matrix6d::Zero())),
-                 InformationMatrix(summary, f2_from_f1));
+  return ToGtsam(f2_from_f1, CovarianceOfEdge(summary), InformationMatrix(summary, f2_from_f1));
 }
 
 BetweenFactor G2oEdge(const Pose& f2_from_f1, const RefineSummary& summary) {
-  return ToG2o(f2_from_f1, summary.covariance.value_or(Matrix6d(Matrix6d::Zero())),
-               InformationMatrix(summary, f2_from_f1));
+  return ToG2o(f2_from_f1, CovarianceOfEdge(summary), InformationMatrix(summary, f2_from_f1));
 }
 
 void SetUndeterminedLength(double length, Pose* f2_from_f1, RefineSummary* summary) {
@@ -153,6 +160,10 @@ void SetUndeterminedLength(double length, Pose* f2_from_f1, RefineSummary* summa
   const Matrix6d jacobian = BodyFromPointJacobian(f2_from_f1->R, point) * scale *
                             BodyFromPointJacobian(f2_from_f1->R, -point);
   *summary->covariance = jacobian * *summary->covariance * jacobian.transpose();
+  if (!summary->calibration_covariance) return;
+  *summary->calibration_covariance =
+      jacobian * *summary->calibration_covariance * jacobian.transpose();
+  for (UnalignedMatrix<6, 7>& gain : summary->calibration_gain) gain = (jacobian * gain).eval();
 }
 
 Matrix6d SqrtInformation(const Matrix6d& information) {

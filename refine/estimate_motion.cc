@@ -167,7 +167,8 @@ void Estimator::GroupMatches() {
   const auto start = std::chrono::steady_clock::now();
   if (solvers_[0]->solve != &Solve2ptAckermann) centre_ = RigCentre(pair_.rig);
   distinct_ = KeepDistinct(pair_.matches, pair_.columns);
-  matches_ = GroupedMatches(WithOrigin(pair_.rig, centre_), distinct_.matches, distinct_.columns);
+  matches_ = GroupedMatches(WithOrigin(pair_.rig, centre_), distinct_.matches, distinct_.columns,
+                            pair_.Interval());
   estimate_.ransac_ms = MillisecondsSince(start);
 }
 

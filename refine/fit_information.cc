@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "rigel/refine/least_squares/calibration_equations.h"
 #include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/least_squares/noise_information.h"
 #include "rigel/refine/least_squares/normal_equations.h"
@@ -184,6 +185,38 @@ Matrix6d Blend(const Matrix6d& model, const Matrix6d& measured, double num_inlie
   return (1.0 - share + 0.5 * share * q) * model + 0.5 * share * measured;
 }
 
+// Of camera k: the variances of its errors.
+Eigen::Matrix<double, kCameraErrors, 1> VariancesOf(const RigCamera& camera) {
+  Eigen::Matrix<double, kCameraErrors, 1> variances;
+  variances.head<3>().setConstant(camera.rotation_sigma * camera.rotation_sigma);
+  variances.segment<3>(3).setConstant(camera.position_sigma * camera.position_sigma);
+  variances(6) = camera.focal_sigma * camera.focal_sigma;
+  return variances;
+}
+
+void AddCalibration(const FittedInliers& fit, const GroupedMatches& matches,
+                    const NoiseModel& noise, const Pose& pose, FitInformation* information) {
+  const std::vector<RigCamera>& cameras = matches.rig().cameras;
+  if (std::all_of(cameras.begin(), cameras.end(),
+                  [](const RigCamera& camera) { return VariancesOf(camera).isZero(0.0); })) {
+    return;
+  }
+  CalibrationEquations equations(matches.rig().size());
+  for (size_t g = 0; g < matches.groups().size(); ++g) {
+    const MatchGroup& group = matches.groups()[g];
+    SampsonKernelOptions options;
+    options.loss = fit.loss;
+    options.loss_scale = fit.loss_scale_sigmas * noise.sigma_of[g];
+    equations.Add(options, matches, group, fit.factors.data() + group.begin, pose,
+                  1.0 / (noise.sigma_of[g] * noise.sigma_of[g]));
+  }
+  information->by_calibration = equations.cross;
+  for (size_t k = 0; k < cameras.size(); ++k) {
+    const auto X = equations.cross.middleCols<kCameraErrors>(static_cast<long>(k) * kCameraErrors);
+    information->calibration += X * VariancesOf(cameras[k]).asDiagonal() * X.transpose();
+  }
+}
+
 }  // namespace
 
 FitInformation InformationOfFit(const FittedInliers& fit, const GroupedMatches& matches,
@@ -236,6 +269,7 @@ FitInformation InformationOfFit(const FittedInliers& fit, const GroupedMatches& 
   information.curvature = fit.is_minimum && !fit.noise_is_given
                               ? CurvatureAt(fit, matches, noise, pose)
                               : Matrix6d(information.observed - information.noise);
+  AddCalibration(fit, matches, noise, pose, &information);
   return information;
 }
 
@@ -253,20 +287,24 @@ bool CompareWithin(const MotionBasis& basis, const Matrix6d& part, const Matrix6
 
 }  // namespace
 
-bool CovarianceOfFit(const FitInformation& information, const Matrix6d& prior,
-                     const MotionBasis& basis, double min_share, Matrix6d* covariance) {
+bool InverseCurvature(const FitInformation& information, const Matrix6d& prior,
+                      const MotionBasis& basis, double min_share, Matrix6d* inverse) {
   // W'(observed) W = I and W' S W = diag(shares).
   Eigen::GeneralizedSelfAdjointEigenSolver<Square> eigen;
   if (!CompareWithin(basis, information.curvature + prior, information.observed + prior, &eigen)) {
     return false;
   }
-  const Square W = eigen.eigenvectors();
+  const Square W = basis * eigen.eigenvectors();
   const Square shares =
       eigen.eigenvalues().cwiseMax(min_share).cwiseMin(1.0).cwiseInverse().asDiagonal();
-  const Square inverse = W * shares * W.transpose();
-  const Square scatter = basis.transpose() * (information.scatter + prior) * basis;
-  *covariance = basis * (inverse * scatter * inverse) * basis.transpose();
-  return covariance->allFinite();
+  *inverse = W * shares * W.transpose();
+  return inverse->allFinite();
+}
+
+FitCovariance CovarianceOfFit(const FitInformation& information, const Matrix6d& prior,
+                              const Matrix6d& inverse) {
+  return {inverse * (information.scatter + prior) * inverse,
+          inverse * information.calibration * inverse};
 }
 
 double TrueInformation(const FitInformation& information, const Matrix6d& prior,

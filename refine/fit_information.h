@@ -34,6 +34,11 @@ struct FitInformation {
   Matrix6d observed = Matrix6d::Zero();  // sum J'J / sigma^2
   // The part of it that the noise of the pixels makes (noise_information.h).
   Matrix6d noise = Matrix6d::Zero();
+  // The derivatives of g by the errors of the calibration, kCameraErrors for each camera
+  // (fundamental_derivatives.h), and what those that are stated add to Var g: X E X' for a
+  // diagonal E. Without columns if no error is stated.
+  Eigen::Matrix<double, 6, Eigen::Dynamic> by_calibration;
+  Matrix6d calibration = Matrix6d::Zero();
 };
 
 // v is measured for each camera pair, and for few matches taken from all; with a given noise it
@@ -42,13 +47,21 @@ FitInformation InformationOfFit(const FittedInliers& fit, const GroupedMatches& 
                                 const MatchErrors& errors, const NoiseModel& noise,
                                 const Pose& pose);
 
-// The covariance S^-1 (V + P) S^-1, S = curvature + P and V = scatter, within the free directions B
-// = `basis`; P = `prior` is the information of the prior. S is taken as `min_share` to all of the
-// observed information in any direction: near an epipole errors are so curved that it may be more.
-// False if that is singular.
-bool CovarianceOfFit(const FitInformation& information, const Matrix6d& prior,
-                     const MotionBasis& basis, double min_share, Matrix6d* covariance);
+// S^-1 within the free directions B = `basis`, S = curvature + P, where P = `prior` is the
+// information of the prior. S is taken as `min_share` to all of the observed information in any
+// direction: near an epipole errors are so curved that it may be more. False if that is singular.
+bool InverseCurvature(const FitInformation& information, const Matrix6d& prior,
+                      const MotionBasis& basis, double min_share, Matrix6d* inverse);
 inline constexpr double kMinShare = 0.25;
+
+// The covariances that follow from S^-1: of the noise, S^-1 (V + P) S^-1, and of the calibration,
+// S^-1 X E X' S^-1. The latter is the same error in all pairs of one rig.
+struct FitCovariance {
+  Matrix6d noise;
+  Matrix6d calibration;
+};
+FitCovariance CovarianceOfFit(const FitInformation& information, const Matrix6d& prior,
+                              const Matrix6d& inverse);
 
 // The least part of the observed information, in any free direction, that is not due to the noise
 // of the pixels. Below kMinTrueInformation the linear theory does not hold: stereo before a wall at

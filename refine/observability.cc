@@ -10,6 +10,7 @@
 #include "rigel/core/pixel_unit.h"
 #include "rigel/core/rig_centre.h"
 #include "rigel/refine/fit_information.h"
+#include "rigel/refine/least_squares/fundamental_derivatives.h"
 #include "rigel/refine/least_squares/uncertainty.h"
 
 namespace rigel {
@@ -20,11 +21,13 @@ namespace {
 double LengthSigma(const FitInformation& information, const Pose& pose) {
   constexpr double kNothing = 1e-4;
   const double norm = pose.t.norm();
-  Matrix6d covariance;
-  if (!(norm > 0) || !CovarianceOfFit(information, Matrix6d::Zero(), FullBasis(pose, true),
-                                      kNothing, &covariance)) {
+  Matrix6d inverse;
+  if (!(norm > 0) ||
+      !InverseCurvature(information, Matrix6d::Zero(), FullBasis(pose, true), kNothing, &inverse)) {
     return std::numeric_limits<double>::infinity();
   }
+  const FitCovariance parts = CovarianceOfFit(information, Matrix6d::Zero(), inverse);
+  const Matrix6d covariance = parts.noise + parts.calibration;
   const Eigen::Vector3d direction = pose.t / norm;
   return std::sqrt(direction.dot(covariance.block<3, 3>(3, 3) * direction)) / norm;
 }
@@ -48,6 +51,19 @@ void LeaveOutShortBaselines(const GroupedMatches& matches, const Pose& pose,
       std::fill_n(factors->begin() + group.begin, group.size, 0.0);
     }
   }
+}
+
+// What the errors of the calibration do to the motion of the body: for each camera the derivatives
+// of (d, e) by its kCameraErrors.
+void SetCalibration(const FitInformation& information, const Matrix6d& inverse,
+                    const Matrix6d& to_body, RefineSummary* summary) {
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> gain =
+      -to_body * inverse * information.by_calibration;
+  for (long k = 0; k < gain.cols(); k += kCameraErrors) {
+    summary->calibration_gain.emplace_back(gain.middleCols<kCameraErrors>(k));
+  }
+  summary->calibration_covariance =
+      Matrix6d(to_body * inverse * information.calibration * inverse * to_body.transpose());
 }
 
 void SetDeviations(const Matrix6d& of_rig, const Pose& body, RefineSummary* summary) {
@@ -119,12 +135,17 @@ void DescribeObservability(const RefineOptions& options, const GroupedMatches& m
   summary->rig_direction = b.norm() > 0 ? Eigen::Vector3d(b.normalized()) : b;
   summary->relative_scale_sigma = LengthSigma(information, fit.pose);
   const Matrix6d prior = fitter.PriorInformation(fit.pose);
-  Matrix6d covariance;
-  if (CovarianceOfFit(information, prior, basis, kMinShare, &covariance)) {
+  Matrix6d inverse;
+  if (InverseCurvature(information, prior, basis, kMinShare, &inverse)) {
     // The fitted point is the rig's centre, or the body's origin if |t| is held.
     const Matrix6d to_rig =
         BodyFromPointJacobian(fit.pose.R, Eigen::Vector3d(-RigCentre(matches.rig())));
-    SetDeviations(to_rig * covariance * to_rig.transpose(), body, summary);
+    const FitCovariance parts = CovarianceOfFit(information, prior, inverse);
+    SetDeviations(to_rig * (parts.noise + parts.calibration) * to_rig.transpose(), body, summary);
+    if (information.by_calibration.cols() > 0) {
+      SetCalibration(information, inverse,
+                     BodyFromPointJacobian(body.R, summary->rig_center) * to_rig, summary);
+    }
     const double share = TrueInformation(information, prior, basis);
     summary->covariance_valid = share >= kMinTrueInformation;
     if (!summary->covariance_valid) {

@@ -166,11 +166,17 @@ struct RefineSummary {
   // Covariance of the perturbation (d, e) of R <- Exp(d) R, t <- t + e: rotation (radians) first,
   // then translation (metres). It covers the parameters that were free: all six, 5 if |t| was held,
   // 2 to 4 if the prior was exact. The depth forms take their reference as exact here. Empty if not
-  // determined.
+  // determined. With the stated errors of the calibration.
   std::optional<Matrix6d> covariance;
   // The same of the motion (R, b) of the rig's centre, see below. With a body's origin far from the
   // cameras it is the more accurate one: it has no differences of large numbers.
   std::optional<Matrix6d> rig_covariance;
+  // Where the rig states errors of its calibration (RigCamera): the part of `covariance` that they
+  // make. It is the same error in all pairs of the rig, so that it adds up along a drive, and the
+  // rest does not. And for each camera the derivatives of (d, e) by its errors: the turn d of
+  // Q <- Exp(d) Q (radians), the shift e of s <- s + e (metres), the growth of the focal lengths.
+  std::optional<Matrix6d> calibration_covariance;
+  std::vector<UnalignedMatrix<6, 7>> calibration_gain;
   // False if the noise of the pixels makes so much of the information that a linear theory of the
   // errors does not hold: see covariance_note. The covariance is then a rough one.
   bool covariance_valid = false;

@@ -1,7 +1,7 @@
 """What the commands that measure have in common: match files, the programs, geometry, the bound.
 
-Used by splits.py, real_rigs.py, one_camera.py and noise_models.py. Names of flags and of members of
-JSON that a program may not have yet are here and nowhere else. Python's standard library only.
+Used by the commands of CONTRIBUTING.md, "Measure". Names of flags and of members of JSON that a
+program may not have yet are here and nowhere else. Python's standard library only.
 
 Matrices are lists of rows. A motion is (R, t), X_2 = R X_1 + t in the body frame. Its covariance is
 that of (d, e) in R <- Exp(d) R, t <- t + e.
@@ -140,6 +140,12 @@ class Programs:
             with open(path, encoding="utf-8") as file:
                 return json.load(file)
 
+    def calibration_error(self, name, sigma_deg, sigma_m):
+        """Flags that state the error of the calibration; none if the program does not take them."""
+        if not self.has_flag(name, "calibration_sigma_deg"):
+            return []
+        return ["--calibration_sigma_deg=%g" % sigma_deg, "--calibration_sigma_m=%g" % sigma_m]
+
     def unknown_noise(self, name):
         """Flags with which a stated noise is not used. Newer programs estimate it unless told."""
         return ["--estimate_noise"] if self.has_flag(name, "estimate_noise") else []
@@ -184,6 +190,35 @@ def rig_files(names, directory):
         path = os.path.join(directory or "", name if name.endswith(".json") else name + ".json")
         rigs.append(path if os.path.exists(path) else name)
     return rigs
+
+
+def add_rig_dir_flag(parser):
+    data = os.environ.get("RIGEL_REAL_DATA")
+    parser.add_argument("--rig_dir", default=os.path.join(data, "rigs") if data else "",
+                        help="directory of rigs; by default $RIGEL_REAL_DATA/rigs")
+
+
+def count_poses(path):
+    """The number of pairs of consecutive poses of a KITTI pose file, or of those of a directory."""
+    paths = glob.glob(os.path.join(glob.escape(path), "*.txt")) if os.path.isdir(path) else [path]
+    count = 0
+    for name in paths:
+        with open(name, encoding="ascii") as file:
+            count += max(0, sum(1 for line in file if line.strip()) - 1)
+    return count
+
+
+def write_stereo_rig(directory):
+    """The file of a stereo rig as KITTI's: 1241 x 376 pixels, focal length 718, 0.54 m apart,
+    1.65 m above the ground. The body is the left camera."""
+    camera = {"model": "pinhole", "parameters": [718, 718, 620, 188], "width": 1241, "height": 376,
+              "q": [1, 0, 0, 0]}
+    path = os.path.join(directory, "stereo.json")
+    with open(path, "w", encoding="ascii") as file:
+        json.dump({"format": "rigel-rig 1", "name": "stereo", "ground_m": 1.65, "down": [0, 1, 0],
+                   "forward": [0, 0, 1], "cameras": [{**camera, "s": [0, 0, 0]},
+                                                     {**camera, "s": [0.54, 0, 0]}]}, file)
+    return path
 
 
 def rig_name(rig):
@@ -432,6 +467,25 @@ def refined_motion(pair):
     return motion_of(motion["q_wxyz"], motion["t"]) if motion else None
 
 
+def rotation_difference(motion, other):
+    """d of R = Exp(d) R_other."""
+    return rotation_vector(times(motion[0], transposed(other[0])))
+
+
+def rotation_error_deg(motion, truth):
+    return math.degrees(norm(rotation_difference(motion, truth)))
+
+
+def difference_nees(one, other):
+    """NEES of the difference of the rotations of two results of rigel_estimate whose errors are
+    independent, or None. Divide by CHI2_MEDIAN[3]: its median is then 1."""
+    covariances = [rotation_covariance(pair) for pair in (one, other)]
+    motions = [refined_motion(pair) for pair in (one, other)]
+    if None in covariances or None in motions:
+        return None
+    return nees(rotation_difference(*motions), [add(a, b) for a, b in zip(*covariances)])
+
+
 def rotation_covariance(pair):
     """3 x 3, or None where the rotation or its covariance is not stated as known."""
     if not pair.get("rotation_observable") or not pair.get("covariance_valid", True):
@@ -551,9 +605,41 @@ def bound(matches, cameras, motion, sigmas, length_sd=1.0):
         if sd > 0:
             add_row(scaled(derivative, 1 / sd))
     along = rig_motion(motion, cameras)
-    by_length = scaled(along, 1 / dot(along, along))
-    arm = apply(motion[0], rig_centre(cameras))
-    add_row(scaled(cross(arm, by_length) + by_length, 1 / length_sd))
+    if norm(along) > 0:
+        by_length = scaled(along, 1 / dot(along, along))
+        arm = apply(motion[0], rig_centre(cameras))
+        add_row(scaled(cross(arm, by_length) + by_length, 1 / length_sd))
+    return inverse(information)
+
+
+def rotation_bound(matches, cameras, rotation, sigma_px):
+    """The Cramer-Rao covariance, 3 x 3, of the rotation of a rig that turns and does not move, from
+    intra-camera matches at their exact pixels: both components of each pixel of view 2 say it."""
+    information = [[0.0] * 3 for _ in range(3)]
+    for i, u, v, _, _, _ in matches:
+        camera = cameras[i]
+
+        def pixel_of(ray, camera=camera):
+            return camera.project(add(camera.position, ray))
+
+        def derivatives(rays, ray, pixel_of=pixel_of):
+            """Central differences of the pixel by steps along rays that are perpendicular to it."""
+            step = 1e-6
+            columns = [minus(pixel_of(add(ray, scaled(along, step))),
+                             pixel_of(minus(ray, scaled(along, step)))) for along in rays]
+            return transposed([scaled(column, 1 / (2 * step)) for column in columns])
+
+        ray = apply(rotation, camera.ray(u, v))
+        if pixel_of(ray) is None:
+            continue
+        by_first = derivatives([apply(rotation, d) for d in camera.ray_by_pixel()], ray)
+        by_turn = derivatives([cross(axis, ray) for axis in ([1, 0, 0], [0, 1, 0], [0, 0, 1])], ray)
+        variance = times(by_first, transposed(by_first))
+        for k in range(2):
+            variance[k][k] += 1.0
+        weight = inverse(variance)
+        term = times(transposed(by_turn), times(weight, by_turn))
+        information = [add(a, scaled(b, 1 / sigma_px ** 2)) for a, b in zip(information, term)]
     return inverse(information)
 
 

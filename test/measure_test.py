@@ -99,6 +99,24 @@ class Helpers(unittest.TestCase):
             variance += (sigma * (other - value) / step) ** 2
         self.assertAlmostEqual(math.sqrt(variance) / sd, 1, 5)
 
+    def test_bound_of_a_turn(self):
+        # One camera at the origin that does not turn: a pixel (u, v) moves by the rotation as the
+        # derivatives below say, and its noise is in both views.
+        camera = measure.Camera("camera 0 pinhole 400 410 320 240 640 480 1 0 0 0 0 0 0".split())
+        matches, information = [], [[0.0] * 3 for _ in range(3)]
+        for u, v in ((100.0, 50.0), (300.0, 400.0), (600.0, 200.0)):
+            matches.append((0, u, v, 0, u, v))
+            x, y = (u - 320) / 400, (v - 240) / 410
+            for row in ([-400 * x * y, 400 * (1 + x * x), -400 * y],
+                        [-410 * (1 + y * y), 410 * x * y, 410 * x]):
+                information = [[information[k][m] + row[k] * row[m] / (2 * 0.3 ** 2)
+                                for m in range(3)] for k in range(3)]
+        identity = [[1.0, 0, 0], [0, 1.0, 0], [0, 0, 1.0]]
+        bound = measure.rotation_bound(matches, [camera], identity, 0.3)
+        for row, expected in zip(bound, measure.inverse(information)):
+            for a, b in zip(row, expected):
+                self.assertAlmostEqual(a / 1e-6, b / 1e-6, 4)
+
     def test_turns_of_one_camera(self):
         # Noise-free matches of the scene agree with its motion, which its file states.
         with tempfile.TemporaryDirectory() as folder:
@@ -160,6 +178,57 @@ class Commands(unittest.TestCase):
         figures = self.run_command("one_camera.py", "--turns=5", "--pairs=2")
         self.assertEqual([turn["pairs"] for turn in figures["turns"]], [2])
         self.assertLess(figures["drives"][0]["end_percent"], 2)
+
+    def test_false_confidence(self):
+        with tempfile.TemporaryDirectory() as folder:
+            poses = os.path.join(folder, "00.txt")
+            with open(poses, "w", encoding="ascii") as file:
+                for k in range(4):
+                    file.write("1 0 0 0 0 1 0 0 0 0 1 %g\n" % (0.8 * k))
+            figures = self.run_command("false_confidence.py", "--poses=" + poses, "--rigs=stereo",
+                                       "--pairs=3", "--solvers=auto,3pt")
+        self.assertEqual([s["pairs"] for s in figures["settings"]], [3, 3])
+        self.assertEqual([s["quiet"] for s in figures["settings"]], [0, 0])
+
+    def test_observable_length(self):
+        with tempfile.TemporaryDirectory() as folder:
+            output = os.path.join(folder, "surround_sim", "ring")
+            measure.Programs(FOLDER).simulate(output, "ring6", 2, inter_share=0.3)
+            sim = self.run_command("observable_length.py", "--data=" + folder, "--sets=sim",
+                                   "--seeds=2")["sets"]
+        self.assertEqual([s["runs"] for s in sim], [4])
+        self.assertEqual([s["claimed_if_good"] for s in sim], [100])
+        self.assertEqual([s["in_5"] for s in sim], [100])
+
+    def test_second_minima(self):
+        scenes = self.run_command("second_minima.py", "--pairs=2", "--scenes=far,cell",
+                                  "--cameras=2")["scenes"]
+        self.assertEqual([s["pairs"] for s in scenes], [2, 2])
+        self.assertLess(scenes[0]["rotation_deg"], 0.3)
+
+    def test_moving_cars(self):
+        settings = self.run_command("moving_cars.py", "--rigs=stereo", "--shares=0,0.1",
+                                    "--pairs=3")["settings"]
+        self.assertEqual([s["failures"] for s in settings], [0, 0])
+        self.assertLess(settings[0]["rotation"], 3)
+
+    def test_still(self):
+        with tempfile.TemporaryDirectory() as folder:
+            measure.Programs(FOLDER).simulate(folder, "scene", 2, motion="still")
+            figures = self.run_command("still.py", "--rigs=box", "--pairs=3",
+                                       "--recorded=" + folder)["figures"]
+        self.assertEqual([f["pairs"] for f in figures], [3, 3, 2])
+        self.assertEqual([f["direction"] for f in figures], [0, 0, 0])
+        for figure in figures:
+            self.assertLess(figure["error_deg"], 0.2)
+
+    def test_recorded_pairs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            measure.Programs(FOLDER).simulate(folder, "scene", 3, num_matches=600, inter_share=0.4)
+            results = self.run_command("recorded_pairs.py", "--matches=" + folder)["results"]
+        self.assertEqual([r["left_out"] for r in results], [0, 0, 0])
+        for result in results:
+            self.assertLess(result["median"], 10)
 
     def test_noise_models(self):
         # Where matches between cameras say |t|, both bounds are of the same quantities.

@@ -22,22 +22,11 @@ Rigs are files of --rig_dir, paths of such files, `scene`, `sceneN` (the built-i
 cameras) or `ringN` (N cameras that look around). The last three need no street.
 With --poses the motions are those of recorded drives, as one more "yaw", `poses`.
 """
-import os
 import tempfile
 
 import measure
 
 RIGS = "nuscenes,argoverse2,waymo,ddad_scene_02,pandaset"
-
-
-def count_poses(directory):
-    """The number of pairs of consecutive poses of a directory of KITTI pose files."""
-    count = 0
-    for name in os.listdir(directory):
-        if name.endswith(".txt"):
-            with open(os.path.join(directory, name), encoding="ascii") as file:
-                count += max(0, sum(1 for line in file if line.strip()) - 1)
-    return count
 
 
 def marginals(results, directory):
@@ -48,8 +37,7 @@ def marginals(results, directory):
         pair, truth = results.get(file.name, {}), file.truth()
         motion, covariance = measure.refined_motion(pair), measure.rotation_covariance(pair)
         if motion and covariance:
-            error = measure.rotation_vector(measure.times(motion[0], measure.transposed(truth[0])))
-            value = measure.nees(error, covariance)
+            value = measure.nees(measure.rotation_difference(motion, truth), covariance)
             rotations.append(None if value is None else value / 3)
         stated = measure.rig_direction(pair)
         if stated:
@@ -64,7 +52,7 @@ def measure_setting(programs, rig, matches, yaw, outliers, arguments):
                 "inter_share": arguments.inter_share}
     if yaw == "poses":
         settings.update(poses=arguments.poses,
-                        every=max(1, count_poses(arguments.poses) // arguments.pairs))
+                        every=max(1, measure.count_poses(arguments.poses) // arguments.pairs))
     else:
         settings.update(rotation_deg=yaw)
     with tempfile.TemporaryDirectory() as folder:
@@ -80,10 +68,8 @@ def measure_setting(programs, rig, matches, yaw, outliers, arguments):
 
 def main():
     parser = measure.make_parser(__doc__, pairs=100)
-    data = os.environ.get("RIGEL_REAL_DATA")
     parser.add_argument("--rigs", default=RIGS, help="comma separated (%s)" % RIGS)
-    parser.add_argument("--rig_dir", default=os.path.join(data, "rigs") if data else "",
-                        help="directory of rigs; by default $RIGEL_REAL_DATA/rigs")
+    measure.add_rig_dir_flag(parser)
     parser.add_argument("--matches", default="300,1000", help="matches of a pair (300,1000)")
     parser.add_argument("--yaw", default="0.3,1,5", help="turns, degrees (0.3,1,5)")
     parser.add_argument("--outliers", default="0.2,0.4", help="shares of outliers (0.2,0.4)")

@@ -58,17 +58,6 @@ def halves_of(file, generator):
     return [[file.rows[k] for k in sorted(half)] for half in halves]
 
 
-def split_nees(one, other):
-    """NEES of the difference of two results of rigel_estimate, or None."""
-    covariances = [measure.rotation_covariance(pair) for pair in (one, other)]
-    motions = [measure.refined_motion(pair) for pair in (one, other)]
-    if None in covariances or None in motions:
-        return None
-    difference = measure.times(motions[0][0], measure.transposed(motions[1][0]))
-    covariance = [measure.add(a, b) for a, b in zip(*covariances)]
-    return measure.nees(measure.rotation_vector(difference), covariance)
-
-
 def measure_directory(programs, directory, arguments):
     """The figures of a directory."""
     files = [measure.MatchFile(path) for path in measure.match_files(directory)]
@@ -85,7 +74,7 @@ def measure_directory(programs, directory, arguments):
         for file in files:
             value = None
             if all(file.name in result for result in results):
-                value = split_nees(results[0][file.name], results[1][file.name])
+                value = measure.difference_nees(results[0][file.name], results[1][file.name])
             if value is None:
                 left_out += 1
             else:

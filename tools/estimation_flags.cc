@@ -71,6 +71,11 @@ DEFINE_string(
     "mean focal length: pixels at the image centre) or algebraic (metres). "
     "algebraic is for comparison only: it is not robust, and it tends to zero motion if all "
     "matches are intra-camera and the scale is free");
+DEFINE_double(calibration_sigma_deg, 0,
+              "1-sigma error of the orientation of each camera, degrees per axis. It enters the "
+              "stated covariances. Instead of the lines camera_sigma of the files; 0: these");
+DEFINE_double(calibration_sigma_m, 0,
+              "1-sigma error of the position of each camera, metres per axis, likewise");
 DEFINE_string(loss, "tukey",
               "robust loss of the refinement: none, huber, cauchy, tukey or truncated");
 DEFINE_string(
@@ -242,6 +247,14 @@ bool OptionsFromFlags(ComparisonOptions* options, std::string* error) {
   if (!(FLAGS_time_limit_ms >= 0) || !std::isfinite(FLAGS_time_limit_ms)) {
     return WrongValue("time_limit_ms", Text(FLAGS_time_limit_ms), "a number from 0", error);
   }
+  for (const auto& [name, value] : {std::pair("calibration_sigma_deg", FLAGS_calibration_sigma_deg),
+                                    std::pair("calibration_sigma_m", FLAGS_calibration_sigma_m)}) {
+    if (!(value >= 0) || !std::isfinite(value)) {
+      return WrongValue(name, Text(value), "a number from 0", error);
+    }
+  }
+  options->calibration_rotation_sigma = DegToRad(FLAGS_calibration_sigma_deg);
+  options->calibration_position_sigma = FLAGS_calibration_sigma_m;
   if (FLAGS_time_limit_ms > 0) options->estimate.time_limit = 1e-3 * FLAGS_time_limit_ms;
   if (!CheckThreads(FLAGS_threads, 1, error)) return false;
   options->num_threads = FLAGS_threads;

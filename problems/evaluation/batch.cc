@@ -59,6 +59,12 @@ bool LoadPair(const ComparisonOptions& options, const std::string& path, int pos
     return false;
   }
   SelectMatches(options.use, pair);
+  if (options.calibration_rotation_sigma > 0 || options.calibration_position_sigma > 0) {
+    for (RigCamera& camera : pair->rig.cameras) {
+      camera.rotation_sigma = options.calibration_rotation_sigma;
+      camera.position_sigma = options.calibration_position_sigma;
+    }
+  }
   return true;
 }
 

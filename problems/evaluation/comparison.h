@@ -30,6 +30,10 @@ struct ComparisonOptions {
   std::vector<std::string> solvers;  // empty: all whose prior every pair has
   MatchUse use = MatchUse::kAll;
   PriorSourceOptions prior;
+  // The error of the calibration, 1 sigma per axis, radians and metres: of all cameras, instead of
+  // what a file states. Both 0: what the file states.
+  double calibration_rotation_sigma = 0.0;
+  double calibration_position_sigma = 0.0;
   EstimateOptions estimate;  // its solver is replaced by each of `solvers`
   int num_threads = 1;
 };

@@ -28,7 +28,7 @@ struct MatchInformation {
 // By position in the pair's matches: 1 for true inliers.
 std::vector<char> TrueInliers(const FramePair& pair) {
   if (!pair.columns.inlier.empty()) return pair.columns.inlier;
-  const GroupedMatches matches(pair.rig, pair.matches);
+  const GroupedMatches matches(pair.rig, pair.matches, pair.columns, pair.Interval());
   std::vector<double> errors;
   std::vector<char> grouped;
   matches.SelectInliers(*pair.truth, kBoundSigmas * *pair.noise_px, &errors, &grouped);
@@ -49,10 +49,10 @@ std::vector<Match> ExactMatches(const FramePair& pair) {
 
 // Fills the rows of the matches of the mask at `pose`, by their positions in `matches`; takes those
 // at an epipole out of the mask.
-std::vector<SampsonRow> RowsOf(const Rig& rig, const std::vector<Match>& matches,
-                               const MatchColumns& columns, const Pose& pose,
+std::vector<SampsonRow> RowsOf(const FramePair& pair, const Rig& rig,
+                               const std::vector<Match>& matches, const Pose& pose,
                                std::vector<char>* mask) {
-  const GroupedMatches grouped(rig, matches, columns);
+  const GroupedMatches grouped(rig, matches, pair.columns, pair.Interval());
   const MotionBasis basis = FullBasis(pose, true);
   std::vector<GroupLinearization> linear;
   LinearizeGroups(grouped, ResidualKind::kSampson, pose, &basis, &linear);
@@ -137,9 +137,8 @@ bool SumInliers(const FramePair& pair, const Eigen::Vector3d& centre, const Pose
   const bool exact = !pair.columns.exact.empty();
   const double variance = *pair.noise_px * *pair.noise_px;
   std::vector<char> mask = TrueInliers(pair);
-  const std::vector<SampsonRow> rows =
-      RowsOf(WithOrigin(pair.rig, centre), exact ? ExactMatches(pair) : pair.matches, pair.columns,
-             truth, &mask);
+  const std::vector<SampsonRow> rows = RowsOf(
+      pair, WithOrigin(pair.rig, centre), exact ? ExactMatches(pair) : pair.matches, truth, &mask);
   const ImagePoints points(pair.matches, pair.columns.landmark);
   for (const std::vector<int>& set : LinkedMatches(points, mask)) {
     if (set.size() > static_cast<size_t>(kMaxLinkedMatches)) return false;

@@ -63,7 +63,8 @@ Json TrialsJson(const std::vector<SolverTrial>& trials) {
   return entries;
 }
 
-Json MatrixJson(const Matrix6d& matrix) {
+template <class Matrix>
+Json MatrixJson(const Matrix& matrix) {
   Json rows = Json::array();
   for (int i = 0; i < matrix.rows(); ++i) {
     Json row = Json::array();
@@ -90,6 +91,12 @@ void PutUncertainty(const RefineSummary& refine, Json* entry) {
     (*entry)["covariance"] = MatrixJson(*refine.covariance);
     (*entry)["covariance_valid"] = refine.covariance_valid;
     if (!refine.covariance_valid) (*entry)["covariance_note"] = refine.covariance_note;
+    if (refine.calibration_covariance) {
+      (*entry)["calibration_covariance"] = MatrixJson(*refine.calibration_covariance);
+      for (const UnalignedMatrix<6, 7>& gain : refine.calibration_gain) {
+        (*entry)["calibration_gain"].push_back(MatrixJson(gain));
+      }
+    }
     if (!refine.weakest_direction.empty()) {
       (*entry)["weakest_direction"] = refine.weakest_direction;
     }

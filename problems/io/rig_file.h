@@ -2,8 +2,8 @@
 //
 //   {"format": "rigel-rig 1", "name": NAME, "ground_m": G, "down": [x, y, z], "forward": [x, y, z],
 //    "cameras": [{"name": NAME, "model": MODEL, "parameters": [...], "width": W, "height": H,
-//                 "q": [w, x, y, z], "s": [x, y, z], "camera_sigma": [ROT_DEG, POS_M], "time_offset": DT},
-//                ...]}
+//                 "q": [w, x, y, z], "s": [x, y, z], "camera_sigma": [ROT_DEG, POS_M],
+//                 "time_offset": DT}, ...]}
 //
 // Required are `cameras`, at least one, and of each camera all but its name, its sigma and its time
 // offset, which are as the lines `camera_sigma` and `camera_time` of match files. q and s are

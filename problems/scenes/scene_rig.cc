@@ -4,9 +4,8 @@
 #include <cstdint>
 #include <limits>
 
-#include <Eigen/LU>
-
 #include "rigel/core/angles.h"
+#include "rigel/core/pose.h"
 #include "rigel/core/random.h"
 
 namespace rigel {
@@ -28,16 +27,6 @@ void Misplace(const SceneMatchOptions& options, Rig* rig) {
 }
 
 }  // namespace
-
-Pose PartOfMotion(const Pose& f2_from_f1, double share) {
-  if (share == 0) return Pose();
-  const Eigen::Vector3d turn = LogSO3(f2_from_f1.R);
-  const Eigen::Vector3d velocity = LeftJacobianSO3(turn).inverse() * f2_from_f1.t;
-  Pose part;
-  part.R = ExpSO3(share * turn);
-  part.t = LeftJacobianSO3(share * turn) * (share * velocity);
-  return part;
-}
 
 double ShareOfTime(const SceneMatchOptions& options, const RigCamera& camera) {
   return camera.time_offset / options.interval_s;

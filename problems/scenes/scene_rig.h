@@ -16,13 +16,9 @@
 #define RIGEL_PROBLEMS_SCENES_SCENE_RIG_H_
 
 #include "rigel/core/frame_pair.h"
-#include "rigel/core/pose.h"
 #include "rigel/problems/scenes/synthetic.h"
 
 namespace rigel {
-
-// That share of a motion with constant velocity: 1 is all of it, 0 none. It may be negative.
-Pose PartOfMotion(const Pose& f2_from_f1, double share);
 
 // The rig that sees pair number `index`, which has the rig that its file states and its truth.
 // Completes what the pair states: the error and the times of the cameras, and the times of the

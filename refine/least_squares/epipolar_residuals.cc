@@ -1,9 +1,9 @@
 #include "rigel/refine/least_squares/epipolar_residuals.h"
 
 #include <cmath>
-#include <limits>
 
-#include "rigel/core/epipolar.h"
+#include "rigel/refine/least_squares/fundamental_derivatives.h"
+#include "rigel/refine/least_squares/normal_equations.h"
 
 namespace rigel {
 
@@ -12,26 +12,15 @@ void LinearizeGroups(const GroupedMatches& matches, ResidualKind kind, const Pos
   groups->resize(matches.groups().size());
   for (size_t g = 0; g < matches.groups().size(); ++g) {
     const MatchGroup& group = matches.groups()[g];
-    const RigCamera& c1 = matches.rig().cameras[group.camera1];
-    const RigCamera& c2 = matches.rig().cameras[group.camera2];
     GroupLinearization& linear = (*groups)[g];
-    const Eigen::Vector3d Rs = pose.R * c1.s;
-    const Eigen::Vector3d b = Rs + pose.t - c2.s;
-    Eigen::Matrix3d left = c2.Q.transpose();
-    Eigen::Matrix3d right = pose.R * c1.Q;
-    if (kind == ResidualKind::kSampson) {
-      left = matches.UnprojectionToBody(group.camera2).transpose();
-      right = pose.R * matches.UnprojectionToBody(group.camera1);
-    }
-    linear.F = left * Skew(b) * right;
-    constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
-    linear.rounding2 = kRounding * kRounding * linear.F.squaredNorm();
+    const bool of_rays = kind != ResidualKind::kSampson;
+    linear.F = FundamentalOf(matches, group, pose, of_rays);
+    linear.rounding2 = Rounding2(linear.F);
     if (basis == nullptr) continue;
+    const Eigen::Matrix<double, 9, Eigen::Dynamic, Eigen::ColMajor, 9, 6> by_parameters =
+        FundamentalByMotion(matches, group, pose, of_rays) * *basis;
     for (int m = 0; m < basis->cols(); ++m) {
-      // d([b]x R) = ([db]x + [b]x [w]x) R with db = w x R s + e.
-      const Eigen::Vector3d w = basis->block<3, 1>(0, m);
-      const Eigen::Vector3d db = w.cross(Rs) + basis->block<3, 1>(3, m);
-      linear.dF[m] = left * (Skew(db) + Skew(b) * Skew(w)) * right;
+      linear.dF[m] = Eigen::Map<const RowMajor3d>(by_parameters.col(m).data());
     }
   }
 }

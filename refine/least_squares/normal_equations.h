@@ -11,6 +11,9 @@
 
 namespace rigel {
 
+// `rounding2` of SumSampson() for a matrix F.
+double Rounding2(const Eigen::Matrix3d& F);
+
 // By the perturbation R <- Exp(w) R, t <- t + e: w (radians), then e (metres).
 struct MotionNormalEquations {
   double cost = 0.0;
@@ -18,7 +21,7 @@ struct MotionNormalEquations {
   Matrix6d curvature = Matrix6d::Zero();
 };
 
-// Adds the result of SumSampson() at `pose` for `pixels` and their weights: all matches of the
+// Adds the result of SumSampson() at `pose` for `rows` and their weights: all matches of the
 // group or some of them. Which parts are asked for does not change the bits of the cost.
 void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatches& matches,
                         const MatchGroup& group, const RowArrays& rows, const double* weights,

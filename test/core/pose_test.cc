@@ -230,5 +230,47 @@ TEST(Rotation, IsRotation) {
   EXPECT_FALSE(IsRotation(nan));
 }
 
+TEST(PartOfMotion, PartsMakeTheWhole) {
+  for (int index = 0; index < 20; ++index) {
+    Random random = Random::Stream(31, index);
+    const Pose motion = {ExpSO3(random.Uniform(0.0, 3.0) * random.UnitVector3()),
+                         random.NormalVector3()};
+    const double share = random.Uniform(-1.0, 2.0);
+    const Pose whole = PartOfMotion(motion, share) * PartOfMotion(motion, 1.0 - share);
+    EXPECT_LT((whole.R - motion.R).norm(), 1e-13);
+    EXPECT_LT((whole.t - motion.t).norm(), 1e-12);
+    EXPECT_EQ(PartOfMotion(motion, 0.0).R, Pose().R);
+    EXPECT_EQ(PartOfMotion(motion, 0.0).t, Pose().t);
+  }
+}
+
+TEST(PartOfMotion, ItsJacobianIsTheNumericOne) {
+  for (int index = 0; index < 20; ++index) {
+    Random random = Random::Stream(32, index);
+    const Pose motion = {ExpSO3(random.Uniform(0.0, 2.5) * random.UnitVector3()),
+                         random.NormalVector3()};
+    const double share = random.Uniform(-1.0, 1.0);
+    const Pose part = PartOfMotion(motion, share);
+    Matrix6d numeric;
+    for (int k = 0; k < 6; ++k) {
+      constexpr double kStep = 1e-5;
+      Eigen::Matrix<double, 6, 1> change[2];
+      for (int side = 0; side < 2; ++side) {
+        const double step = side == 0 ? kStep : -kStep;
+        Pose moved = motion;
+        if (k < 3) {
+          moved.R = ExpSO3(step * Eigen::Vector3d::Unit(k)) * motion.R;
+        } else {
+          moved.t(k - 3) += step;
+        }
+        const Pose of_moved = PartOfMotion(moved, share);
+        change[side] << LogSO3(of_moved.R * part.R.transpose()), of_moved.t - part.t;
+      }
+      numeric.col(k) = (change[0] - change[1]) / (2.0 * kStep);
+    }
+    EXPECT_LT((PartOfMotionJacobian(motion, share) - numeric).norm(), 1e-8 * (1 + numeric.norm()));
+  }
+}
+
 }  // namespace
 }  // namespace rigel

@@ -258,6 +258,15 @@ TEST(FitInformation, TrueInformationIsThatOfTheWorstFreeDirection) {
   EXPECT_EQ(TrueInformation(information, Matrix6d::Zero(), all), 0.0);
 }
 
+// The covariance of the noise; false without one.
+bool NoiseCovariance(const FitInformation& information, const Matrix6d& prior,
+                     const MotionBasis& basis, Matrix6d* covariance) {
+  Matrix6d inverse;
+  if (!InverseCurvature(information, prior, basis, kMinShare, &inverse)) return false;
+  *covariance = CovarianceOfFit(information, prior, inverse).noise;
+  return true;
+}
+
 TEST(FitInformation, TheCurvatureIsAShareOfTheObservedInformation) {
   FitInformation information;
   information.observed.diagonal() << 1, 1, 1, 4, 4, 4;
@@ -265,17 +274,16 @@ TEST(FitInformation, TheCurvatureIsAShareOfTheObservedInformation) {
   information.curvature.diagonal() << -0.5, 0.1, 0.5, 4, 1, 8;
   const MotionBasis all = FullBasis(Pose(), true);
   Matrix6d covariance;
-  ASSERT_TRUE(CovarianceOfFit(information, Matrix6d::Zero(), all, kMinShare, &covariance));
+  ASSERT_TRUE(NoiseCovariance(information, Matrix6d::Zero(), all, &covariance));
   Vector6d expected;
   expected << 16, 16, 4, 0.25, 4, 0.25;
   EXPECT_LT((covariance - Matrix6d(expected.asDiagonal())).norm(), 1e-12);
   // The prior is of the curvature, of the observed information and of the scatter.
-  ASSERT_TRUE(CovarianceOfFit(information, Matrix6d::Identity(), all, kMinShare, &covariance));
+  ASSERT_TRUE(NoiseCovariance(information, Matrix6d::Identity(), all, &covariance));
   expected << 2.0 / 0.25, 2.0 / 1.21, 2.0 / 2.25, 5.0 / 25, 5.0 / 4, 5.0 / 25;
   EXPECT_LT((covariance - Matrix6d(expected.asDiagonal())).norm(), 1e-12);
   // In the free directions alone.
-  ASSERT_TRUE(
-      CovarianceOfFit(information, Matrix6d::Zero(), all.rightCols(2), kMinShare, &covariance));
+  ASSERT_TRUE(NoiseCovariance(information, Matrix6d::Zero(), all.rightCols(2), &covariance));
   expected << 0, 0, 0, 0, 4, 0.25;
   EXPECT_LT((covariance - Matrix6d(expected.asDiagonal())).norm(), 1e-12);
 }
@@ -288,11 +296,10 @@ TEST(FitInformation, SingularInformationHasNoCovariance) {
   const MotionBasis all = FullBasis(Pose(), true);
   const Matrix6d before = Matrix6d::Constant(7.0);
   Matrix6d covariance = before;
-  EXPECT_FALSE(CovarianceOfFit(information, Matrix6d::Zero(), all, kMinShare, &covariance));
+  EXPECT_FALSE(NoiseCovariance(information, Matrix6d::Zero(), all, &covariance));
   information.observed(2, 2) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(CovarianceOfFit(information, Matrix6d::Zero(), all, kMinShare, &covariance));
-  EXPECT_FALSE(
-      CovarianceOfFit(information, Matrix6d::Zero(), MotionBasis(6, 0), kMinShare, &covariance));
+  EXPECT_FALSE(NoiseCovariance(information, Matrix6d::Zero(), all, &covariance));
+  EXPECT_FALSE(NoiseCovariance(information, Matrix6d::Zero(), MotionBasis(6, 0), &covariance));
   EXPECT_EQ(covariance, before);
 }
 
@@ -311,11 +318,75 @@ TEST(FitInformation, WithoutNoiseTheCovarianceIsThatOfLeastSquares) {
     for (const bool length_is_free : {true, false}) {
       const MotionBasis B = FullBasis(*pair.truth, length_is_free);
       Matrix6d covariance;
-      ASSERT_TRUE(CovarianceOfFit(information, Matrix6d::Zero(), B, kMinShare, &covariance));
+      ASSERT_TRUE(NoiseCovariance(information, Matrix6d::Zero(), B, &covariance));
       const Eigen::MatrixXd product =
           B.transpose() * covariance * B * (B.transpose() * JJ * B) / (kSigma * kSigma);
       EXPECT_LT((product - Eigen::MatrixXd::Identity(B.cols(), B.cols())).norm(), 0.01);
     }
+  }
+}
+
+// What the calibration does is linear: the minimum for a rig with a small error against that of the
+// right one.
+TEST(FitInformation, CalibrationErrorsMoveTheMotionAsStated) {
+  for (int index = 0; index < 3; ++index) {
+    FramePair pair = ExactPair(150, index);
+    for (RigCamera& camera : pair.rig.cameras) {
+      camera.rotation_sigma = 1e-3;
+      camera.position_sigma = 1e-2;
+      camera.focal_sigma = 1e-3;
+    }
+    RefineOptions options;
+    options.noise_px = 0.01;
+    Pose reference = *pair.truth;
+    const RefineSummary summary = RefinePair(options, pair, &reference);
+    ASSERT_EQ(summary.calibration_gain.size(), pair.rig.cameras.size());
+    Matrix6d sum = Matrix6d::Zero();
+    for (int k = 0; k < pair.rig.size(); ++k) {
+      for (int error = 0; error < 7; ++error) {
+        constexpr double kStep = 1e-5;
+        // The central difference, so that what is left is of third order.
+        Pose moved[2];
+        for (int side = 0; side < 2; ++side) {
+          const double step = side == 0 ? kStep : -kStep;
+          FramePair wrong = pair;
+          RigCamera& camera = wrong.rig.cameras[k];
+          const Eigen::Vector3d unit = Eigen::Vector3d::Unit(error % 3);
+          if (error < 3) {
+            camera.Q = ExpSO3(step * unit) * camera.Q;
+          } else if (error < 6) {
+            camera.s += step * unit;
+          } else {
+            camera.intrinsics.fx *= 1.0 + step;
+            camera.intrinsics.fy *= 1.0 + step;
+          }
+          moved[side] = *pair.truth;
+          RefinePair(options, wrong, &moved[side]);
+        }
+        const Vector6d numeric = Difference(moved[0], moved[1]) / (2.0 * kStep);
+        const Vector6d stated = summary.calibration_gain[k].col(error);
+        // To what the weak length and the noise of the pixels change.
+        EXPECT_LT((stated - numeric).norm(), 5e-3 * (numeric.norm() + 1.0))
+            << "camera " << k << ", error " << error << ": " << stated.transpose() << " and "
+            << numeric.transpose();
+        const double sigma = error < 3 ? 1e-3 : error < 6 ? 1e-2 : 1e-3;
+        sum += sigma * sigma * stated * stated.transpose();
+      }
+    }
+    ASSERT_TRUE(summary.calibration_covariance.has_value());
+    EXPECT_LT((*summary.calibration_covariance - sum).norm(), 1e-9 * sum.norm());
+    // It is a part of the covariance.
+    const Eigen::LLT<Eigen::Matrix<double, 6, 6>> rest(*summary.covariance - sum);
+    EXPECT_EQ(rest.info(), Eigen::Success);
+    RefineSummary without;
+    for (RigCamera& camera : pair.rig.cameras) {
+      camera.rotation_sigma = camera.position_sigma = camera.focal_sigma = 0.0;
+    }
+    Pose pose = *pair.truth;
+    without = RefinePair(options, pair, &pose);
+    EXPECT_FALSE(without.calibration_covariance.has_value());
+    EXPECT_LT((*without.covariance - (*summary.covariance - sum)).norm(),
+              1e-6 * without.covariance->norm());
   }
 }
 

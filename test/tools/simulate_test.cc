@@ -164,6 +164,38 @@ TEST_F(SimulateTest, StreetWithARigFile) {
   EXPECT_EQ(driven[0].columns.sigma1.size(), 200u);
 }
 
+TEST_F(SimulateTest, ErrorsAndTimesOfCameras) {
+  const Args args = {"--pairs=2", "--num_matches=20"};
+  const std::string plain = Bytes(Simulate("plain", args));
+  EXPECT_EQ(Bytes(Simulate("none", args + Args{"--calibration_sigma_deg=0", "--interval_s=1"})),
+            plain);
+  const Args error = {"--calibration_sigma_deg=0.2", "--calibration_sigma_m=0.02"};
+  const std::string wrong = Bytes(Simulate("wrong", args + error));
+  EXPECT_NE(wrong, plain);
+  EXPECT_THAT(wrong, testing::Not(HasSubstr("camera_sigma")));
+  for (const FramePair& pair : ReadAll(Simulate(
+           "stated", args + error + Args{"--state_calibration_sigma", "--camera_times=0,0.045"}))) {
+    EXPECT_NEAR(RadToDeg(pair.rig.cameras[0].rotation_sigma), 0.2, 1e-12);
+    EXPECT_EQ(pair.rig.cameras[1].position_sigma, 0.02);
+    EXPECT_EQ(pair.rig.cameras[1].time_offset, 0.045);
+    EXPECT_TRUE(pair.time1 && pair.time2);
+  }
+}
+
+TEST_F(SimulateTest, StandsStillOrTurns) {
+  WriteText(Path("rig.json"), kRig);
+  const Args street = {"--scene=street", "--rig=" + Path("rig.json"), "--pairs=1"};
+  for (const Args& scene : {Args{"--pairs=1"}, street}) {
+    const FramePair still = ReadAll(Simulate("still", scene + Args{"--motion=still"}))[0];
+    EXPECT_EQ(LogSO3(still.truth->R).norm(), 0);
+    EXPECT_EQ(still.truth->t.norm(), 0);
+    const FramePair turn =
+        ReadAll(Simulate("turn", scene + Args{"--motion=turn", "--rotation_deg=4"}))[0];
+    EXPECT_NEAR(RadToDeg(LogSO3(turn.truth->R).norm()), 4, 1e-9);
+    EXPECT_EQ(turn.truth->t.norm(), 0);
+  }
+}
+
 TEST_F(SimulateTest, WrongFlagsOfTheStreet) {
   WriteText(Path("rig.json"), kRig);
   const std::string rig = "--rig=" + Path("rig.json");
@@ -176,7 +208,10 @@ TEST_F(SimulateTest, WrongFlagsOfTheStreet) {
       {{"--scene=street"}, 2, "--rig is missing"},
       {{rig}, 2, "--rig: is of --scene=street"},
       {{"--motion=car"}, 2, "A car needs --scene=street"},
-      {{"--scene=street", rig, "--motion=planar"}, 2, "expected car"},
+      {{"--scene=street", rig, "--motion=planar"}, 2, "expected car, turn or still"},
+      {{"--scene=street", rig, "--motion=turn", "--distance_m=2"}, 2, "--motion=turn has none"},
+      {{"--scene=street", rig, "--camera_times=0,1,2"}, 2, "each of the 2 cameras"},
+      {{"--scene=street", rig, "--calibration_sigma_m=-1"}, 2, "--calibration_sigma_m must be"},
       {{"--scene=street", rig, "--ring"}, 2, "--ring: is of --scene=box"},
       {{"--scene=street", rig, "--distance_m=-1"}, 2, "--distance_m must be finite"},
       {{"--scene=street", rig, "--ground_m=-5"}, 2, "--ground_m must put the ground below"},
@@ -214,7 +249,13 @@ TEST_F(SimulateTest, WrongValuesAreUsageErrorsAndLeaveNothing) {
       {"--num_matches=-1", "num_matches"},
       {"--pairs=0", "--pairs"},
       {"--pairs=-3", "--pairs"},
-      {"--motion=up", "forward, random, sideways or planar"},
+      {"--motion=up", "forward, random, sideways, planar, turn or still"},
+      {"--calibration_sigma_deg=-1", "--calibration_sigma_deg must be finite and not negative"},
+      {"--calibration_sigma_m=inf", "--calibration_sigma_m must be finite and not negative"},
+      {"--state_calibration_sigma", "--state_calibration_sigma needs a calibration_sigma_deg"},
+      {"--camera_times=0,x", "--camera_times=x: expected numbers"},
+      {"--camera_times=0,1,2", "--camera_times must have a number for each of the 2 cameras"},
+      {"--interval_s=0", "--interval_s must be positive and finite"},
       {"--rotation_axis=z", "y or random"},
   };
   for (const auto& [flag, what] : wrong) {
@@ -226,6 +267,10 @@ TEST_F(SimulateTest, WrongValuesAreUsageErrorsAndLeaveNothing) {
       RunTool("simulate", {"--output=" + Path("out"), "--motion=planar", "--rotation_axis=random"});
   EXPECT_EXIT_CODE(planar, 2);
   EXPECT_THAT(planar.err, HasSubstr("--rotation_axis=random contradicts planar motion"));
+  const Outcome still =
+      RunTool("simulate", {"--output=" + Path("out"), "--motion=still", "--rotation_deg=2"});
+  EXPECT_EXIT_CODE(still, 2);
+  EXPECT_THAT(still.err, HasSubstr("--rotation_deg: --motion=still has none"));
   const Outcome nowhere = RunTool("simulate", {});
   EXPECT_EXIT_CODE(nowhere, 2);
   EXPECT_THAT(nowhere.err, HasSubstr("--output is missing"));

@@ -73,6 +73,28 @@ TEST(MatchFile, ReadsWhereTheFrontIs) {
   EXPECT_EQ(FormatMatches(MustParse(kValid)).find("forward"), std::string::npos);
 }
 
+TEST(MatchFile, ReadsErrorsAndTimesOfCameras) {
+  const std::string text =
+      Replace(kValid, "camera 1", "camera_sigma 1 0.5 0.02\ncamera_time 1 -0.045\ncamera 1");
+  const FramePair pair = MustParse(
+      Replace(text, "noise_px", "camera_sigma 0 1 0.01 0.001\ncamera_time 0 0\nnoise_px"));
+  const RigCamera& c0 = pair.rig.cameras[0];
+  EXPECT_DOUBLE_EQ(c0.rotation_sigma, kPi / 180);
+  EXPECT_EQ(c0.position_sigma, 0.01);
+  EXPECT_EQ(c0.focal_sigma, 0.001);
+  EXPECT_EQ(c0.time_offset, 0);
+  const RigCamera& c1 = pair.rig.cameras[1];
+  EXPECT_DOUBLE_EQ(c1.rotation_sigma, 0.5 * kPi / 180);
+  EXPECT_EQ(c1.position_sigma, 0.02);
+  EXPECT_EQ(c1.focal_sigma, 0);
+  EXPECT_EQ(c1.time_offset, -0.045);
+  const std::string written = FormatMatches(pair);
+  EXPECT_NE(written.find("\ncamera_sigma 0 1 0.01 0.001\ncamera_sigma 1 0.5 0.02\n"
+                         "camera_time 1 -0.045\n"),
+            std::string::npos);
+  ExpectSame(MustParse(written), pair);
+}
+
 TEST(MatchFile, OptionalLinesMayBeAbsent) {
   const FramePair pair = MustParse(
       "format rigmatch 1\ncamera 0 pinhole 1 1 0 0 1 1 1 0 0 0 0 0 0\ngravity1 1 0 0\n"

@@ -95,6 +95,10 @@ inline void ExpectSame(const FramePair& a, const FramePair& b) {
     EXPECT_EQ(ca.intrinsics.height, cb.intrinsics.height);
     EXPECT_LT((ca.Q - cb.Q).cwiseAbs().maxCoeff(), kRotationTolerance);
     EXPECT_EQ(ca.s, cb.s);
+    EXPECT_EQ(ca.rotation_sigma, cb.rotation_sigma);
+    EXPECT_EQ(ca.position_sigma, cb.position_sigma);
+    EXPECT_EQ(ca.focal_sigma, cb.focal_sigma);
+    EXPECT_EQ(ca.time_offset, cb.time_offset);
   }
   EXPECT_EQ(a.time1, b.time1);
   EXPECT_EQ(a.time2, b.time2);

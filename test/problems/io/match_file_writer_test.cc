@@ -176,6 +176,8 @@ TEST(MatchFile, WhatCannotBeReadBackIsNotWritten) {
       {"S is", [](FramePair* p, double) { p->prior.axis_sigma = 0; }},
       {"S is", [](FramePair* p, double x) { p->prior.axis_sigma = x; }},
       {"SIGMA is '0'", [](FramePair* p, double) { p->prior.distance_sigma = 0; }},
+      {"POS_M is '0'", [](FramePair* p, double) { p->rig.cameras[1].rotation_sigma = 0.1; }},
+      {"DT is 'nan'", [](FramePair* p, double x) { p->rig.cameras[1].time_offset = x; }},
       {"no 'camera'", [](FramePair* p, double) { p->rig.cameras.clear(); }},
       {"one time", [](FramePair* p, double) { p->time2.reset(); }},
       {"T1 is 'nan'", [](FramePair* p, double x) { p->time1 = x; }},

@@ -60,6 +60,16 @@ TEST(RigFile, ReadsEveryField) {
   EXPECT_EQ(file.rig.cameras[1].intrinsics.cy, 4);
 }
 
+TEST(RigFile, ReadsTheErrorAndTheTimeOfACamera) {
+  const RigFile file = MustRead(
+      OneCamera(R"("model": "pinhole", "parameters": [7, 8, 3, 4], "camera_sigma": [0.5, 0.02],
+          "time_offset": -0.045)"));
+  const RigCamera& camera = file.rig.cameras[0];
+  EXPECT_DOUBLE_EQ(camera.rotation_sigma, DegToRad(0.5));
+  EXPECT_EQ(camera.position_sigma, 0.02);
+  EXPECT_EQ(camera.time_offset, -0.045);
+}
+
 TEST(RigFile, PinholePartOfEachModel) {
   const struct {
     const char* keys;
@@ -125,6 +135,9 @@ TEST(RigFile, BrokenOnesAreRefused) {
       {"[0.6, 0.8, 0, 0]", "[0.6, 0.7, 0, 0]", "q has a norm that is not 1, expected"},
       {"[0.6, 0.8, 0, 0]", "[0.6, 0.8, 0]", "q has 3 entries, expected 4 numbers"},
       {"[0.5, -0.1, 2]", "[0.5, -0.1, 1e999]", "number overflow"},
+      {"\"s\"", "\"camera_sigma\": 0.1, \"s\"", "camera_sigma has '0.1', expected 2 numbers"},
+      {"\"s\"", "\"camera_sigma\": [1, 0], \"s\"", "camera_sigma is '0', expected a positive"},
+      {"\"s\"", "\"time_offset\": \"1\", \"s\"", "time_offset is '\"1\"', expected a number"},
       {"\"s\"", "\"t\"", "no 's', expected the position"},
   };
   for (const auto& c : cases) {
