@@ -111,10 +111,9 @@ Matrix6d AdjointOfScrew(const Vector6d& screw) {
   return ad;
 }
 
-// Exp(screw + d) = Exp(J d) Exp(screw) to first order: sum of ad^n / (n + 1)!. Turns are at most
-// pi, so that later terms are below the rounding.
+// Exp(screw + d) = Exp(J d) Exp(screw) to first order: sum of ad^n / (n + 1)!.
 Matrix6d LeftJacobianOfScrew(const Vector6d& screw) {
-  constexpr int kTerms = 24;
+  constexpr int kTerms = 24;  // turns are at most pi: later terms are below the rounding
   const Matrix6d ad = AdjointOfScrew(screw);
   Matrix6d term = Matrix6d::Identity(), sum = term;
   for (int n = 1; n < kTerms; ++n) {
