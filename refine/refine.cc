@@ -14,6 +14,7 @@
 #include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/refine/observability.h"
 #include "rigel/refine/search/chance.h"
+#include "rigel/refine/search/length_vote.h"
 #include "rigel/refine/search/shared_pixels.h"
 #include "rigel/refine/search/sign_and_scale.h"
 
@@ -40,7 +41,7 @@ class Refiner {
     summary_.num_rounds = 0;
     summary_.num_iterations = 0;
     Start();
-    const bool done = FitUntilSelectionStays(false) && TryTypicalLength() && CheckSign() &&
+    const bool done = FitUntilSelectionStays(false) && TryOtherLengths() && CheckSign() &&
                       FitUntilSelectionStays(true);
     Describe(done);
     if (summary_.IsSolutionUsable()) *pose = fit_.pose;
@@ -54,7 +55,9 @@ class Refiner {
   bool FitUntilSelectionStays(bool exclude_implausible);
   bool LengthIsOpen() const;
   double CostOf(const Pose& pose, double threshold_px, double sigma_px) const;
-  bool TryTypicalLength();
+  double VotedLength() const;
+  bool TryLength(double length);
+  bool TryOtherLengths();
   bool CheckSign();
   bool ExceedsChanceAt(double threshold_px) const;
   void Describe(bool done);
@@ -184,24 +187,56 @@ double Refiner::CostOf(const Pose& pose, double threshold_px, double sigma_px) c
          sigma_px * sigma_px * r.squaredNorm();
 }
 
-// Where the matches leave the length open, the start's is a guess. From a wrong one the fit can end
-// at a false minimum, with |b| as small as the arms of the cameras.
-bool Refiner::TryTypicalLength() {
-  constexpr double kNear = 1.0;  // of the logarithm: a standard deviation of the weak prior
-  if (!GoesOn() || !LengthIsOpen()) return true;
-  const double typical =
-      prior_.distance.value_or(0.0) > 0 ? *prior_.distance : options_.typical_length;
-  const double ratio = typical / fit_.pose.t.norm();
-  if (std::abs(std::log(ratio)) < kNear) return true;
+// Fits from another length, and keeps the better fit.
+bool Refiner::TryLength(double length) {
   const Fit found = fit_;
   const RefineSummary summary = summary_;
   const double threshold = Threshold(), sigma = fit_.noise.sigma_px;  // the same for both
-  fit_.pose.t *= ratio;
-  if (!FitUntilSelectionStays(false) ||
-      !(CostOf(fit_.pose, threshold, sigma) < CostOf(found.pose, threshold, sigma))) {
-    fit_ = found;
-    summary_ = summary;
+  fit_.pose.t *= length / fit_.pose.t.norm();
+  if (FitUntilSelectionStays(false) &&
+      CostOf(fit_.pose, threshold, sigma) < CostOf(found.pose, threshold, sigma)) {
+    return true;
   }
+  fit_ = found;
+  summary_ = summary;
+  return false;
+}
+
+// The length with the best score, of that of the fit and those that the matches vote for. It is
+// looked at with a threshold that forgives what the fit bent for a wrong length.
+double Refiner::VotedLength() const {
+  constexpr double kLoose = 3.0;    // thresholds
+  constexpr double kReached = 0.1;  // of the logarithm: the fit has been as far as that
+  const double length = fit_.pose.t.norm();
+  const auto score = [&](double of_length, double bound) {
+    Pose pose = fit_.pose;
+    pose.t *= of_length / length;
+    return matches_.ScoreInFront(pose, kLoose * Threshold(), bound, nullptr);
+  };
+  double best = length;
+  double least = score(length, std::numeric_limits<double>::infinity());
+  for (const double voted : VoteOnLength(matches_, fit_.pose, fit_.noise.sigma_px)) {
+    if (std::abs(std::log(voted / length)) < kReached) continue;
+    const double score_of_voted = score(voted, least);
+    if (!(score_of_voted < least)) continue;
+    least = score_of_voted;
+    best = voted;
+  }
+  return best;
+}
+
+// The length of the start is that of a few matches, and where the matches leave it open a guess.
+// From a wrong one the fit can end at a false minimum, with |b| as small as the arms of the
+// cameras.
+bool Refiner::TryOtherLengths() {
+  constexpr double kNear = 1.0;  // of the logarithm: a standard deviation of the weak prior
+  if (!GoesOn() || options_.hold_distance) return true;
+  const double voted = VotedLength();
+  if (voted != fit_.pose.t.norm()) TryLength(voted);
+  if (!GoesOn() || !LengthIsOpen()) return true;
+  const double typical =
+      prior_.distance.value_or(0.0) > 0 ? *prior_.distance : options_.typical_length;
+  if (std::abs(std::log(typical / fit_.pose.t.norm())) > kNear) TryLength(typical);
   return true;
 }
 
