@@ -7,6 +7,7 @@
 #include <string>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/metrics.h"
 #include "rigel/core/pixel_unit.h"
 #include "rigel/core/rig_centre.h"
 #include "rigel/refine/fit_information.h"
@@ -90,6 +91,26 @@ double ParallaxLimitPx(const RefineOptions& options, const GroupedMatches& match
   return kParallaxSigmas * noise_px;
 }
 
+// What another motion that fits as well leaves of the flags.
+void HeedOtherMotion(const Pose& body, RefineSummary* summary) {
+  if (!summary->other_motion.has_value()) return;
+  constexpr double kSigmas = 3.0;  // closer ones are the same motion
+  const Pose& other = *summary->other_motion;
+  const Eigen::Vector3d b = MotionOfPoint(body, summary->rig_center).t;
+  const Eigen::Vector3d other_b = MotionOfPoint(other, summary->rig_center).t;
+  const bool turns = RotationError(body.R, other.R) > kSigmas * summary->rotation_sigma;
+  const bool leads_elsewhere =
+      TranslationDirectionError(b, other_b) > kSigmas * summary->rig_direction_sigma;
+  const bool is_longer =
+      std::abs(std::log(other_b.norm() / b.norm())) > kSigmas * summary->relative_scale_sigma;
+  if (turns) summary->rotation_observable = false;
+  if (turns || leads_elsewhere) {
+    summary->rig_translation_observable = summary->translation_observable = false;
+  }
+  if (turns || leads_elsewhere || is_longer) summary->scale_observable = false;
+  if (!turns && !leads_elsewhere && !is_longer) summary->other_motion.reset();
+}
+
 void SetFlags(RefineSummary* summary, bool at_limit) {
   if (!summary->covariance || !summary->exceeds_chance) return;
   summary->rotation_observable = RadToDeg(summary->rotation_sigma) <= kRotationObservableDeg;
@@ -161,6 +182,7 @@ void DescribeObservability(const RefineOptions& options, const GroupedMatches& m
   }
   constexpr double kNearLimit = 0.99;
   SetFlags(summary, b.norm() > kNearLimit * fitter.max_length());
+  HeedOtherMotion(body, summary);
 }
 
 }  // namespace rigel

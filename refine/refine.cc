@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "rigel/core/frame_pair.h"
@@ -26,11 +28,12 @@ namespace {
 class Refiner {
  public:
   Refiner(const RefineOptions& options, bool gate_follows_noise, const GroupedMatches& matches,
-          const Eigen::Vector3d& point, const MotionPrior& prior)
+          const Eigen::Vector3d& point, const MotionPrior& prior, const std::vector<Pose>& others)
       : options_(options),
         matches_(matches),
         point_(point),
         prior_(prior),
+        others_(others),
         sign_subset_(matches.EvenSubset(kSignSubset)),
         fitter_(options, gate_follows_noise, matches, point, prior) {}
 
@@ -42,7 +45,7 @@ class Refiner {
     summary_.num_iterations = 0;
     Start();
     const bool done = FitUntilSelectionStays(false) && TryOtherLengths() && CheckSign() &&
-                      FitUntilSelectionStays(true);
+                      TryOthers() && FitUntilSelectionStays(true);
     Describe(done);
     if (summary_.IsSolutionUsable()) *pose = fit_.pose;
     return summary_;
@@ -59,6 +62,7 @@ class Refiner {
   bool TryLength(double length);
   bool TryOtherLengths();
   bool CheckSign();
+  bool TryOthers();
   bool ExceedsChanceAt(double threshold_px) const;
   void Describe(bool done);
   void CountCameraPairs();
@@ -73,9 +77,11 @@ class Refiner {
   const GroupedMatches& matches_;
   const Eigen::Vector3d point_;
   const MotionPrior& prior_;
+  const std::vector<Pose>& others_;  // motions of the body
   const GroupedMatches sign_subset_;
   Fitter fitter_;
   Fit fit_;
+  std::optional<Pose> other_;  // of the point, a minimum that fits as well
   RefineSummary summary_;
 };
 
@@ -249,6 +255,39 @@ bool Refiner::CheckSign() {
   return fit_.pose.t == t || FitUntilSelectionStays(false);
 }
 
+// Fits from the other motions that the search found, and keeps the best. Of two that fit alike the
+// other is told.
+bool Refiner::TryOthers() {
+  // Twice the difference of log likelihoods: of as much noise may make with a probability of 1e-5.
+  constexpr double kAlike = 20.0;
+  // A start that costs more does not end at such a fit.
+  constexpr double kMaxStart = 1.3;
+  for (const Pose& body : others_) {
+    if (!GoesOn()) break;
+    const double threshold = Threshold(), sigma = fit_.noise.sigma_px;  // the same for both
+    const double cost = CostOf(fit_.pose, threshold, sigma);
+    const double alike = kAlike * sigma * sigma;
+    const Pose start = MotionOfPoint(body, point_);
+    if (!(CostOf(start, threshold, sigma) < kMaxStart * cost + alike)) continue;
+    Fit found = fit_;
+    RefineSummary summary = summary_;
+    fit_.pose = start;
+    const bool fits = FitUntilSelectionStays(false);
+    const double difference =
+        fits ? CostOf(fit_.pose, threshold, sigma) - cost : std::numeric_limits<double>::infinity();
+    if (!(difference < 0)) {
+      std::swap(fit_, found);
+      std::swap(summary_, summary);
+    }
+    if (std::abs(difference) < alike) {
+      other_ = found.pose;
+    } else if (difference < 0) {
+      other_.reset();
+    }
+  }
+  return true;
+}
+
 void Refiner::CountCameraPairs() {
   const std::vector<RigCamera>& cameras = matches_.rig().cameras;
   for (size_t g = 0; g < matches_.groups().size(); ++g) {
@@ -293,6 +332,7 @@ void Refiner::Describe(bool done) {
     summary_.termination = Termination::kStopped;
     summary_.stopped = fitter_.stop()->reason();
   } else {
+    if (other_.has_value()) summary_.other_motion = MotionOfBody(*other_, point_);
     DescribeObservability(options_, matches_, point_, fitter_, fit_, &summary_);
   }
   summary_.num_inliers = fit_.num_inliers;
@@ -350,7 +390,8 @@ bool RefineOptions::IsValid(std::string* error) const {
 }
 
 RefineSummary RefineAbout(const RefineOptions& options, const GroupedMatches& matches,
-                          const Eigen::Vector3d& origin, const MotionPrior& prior, Pose* pose) {
+                          const Eigen::Vector3d& origin, const MotionPrior& prior,
+                          const std::vector<Pose>& others, Pose* pose) {
   RefineOptions resolved = options;
   const bool gate_follows_noise = options.threshold_px == kAutoThresholdPx;
   resolved.threshold_px = ThresholdPx(options.threshold_px, matches.rig());
@@ -365,8 +406,8 @@ RefineSummary RefineAbout(const RefineOptions& options, const GroupedMatches& ma
   const Eigen::Vector3d point = there ? origin : Eigen::Vector3d(origin + step);
   Pose result = MotionOfPoint(*pose, point);
   RefineSummary summary =
-      there ? Refiner(resolved, gate_follows_noise, matches, point, prior).Run(&result)
-            : Refiner(resolved, gate_follows_noise, matches.WithOrigin(step), point, prior)
+      there ? Refiner(resolved, gate_follows_noise, matches, point, prior, others).Run(&result)
+            : Refiner(resolved, gate_follows_noise, matches.WithOrigin(step), point, prior, others)
                   .Run(&result);
   if (summary.IsSolutionUsable()) *pose = MotionOfBody(result, point);
   return summary;
@@ -374,7 +415,7 @@ RefineSummary RefineAbout(const RefineOptions& options, const GroupedMatches& ma
 
 RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,
                      const MotionPrior& prior, Pose* pose) {
-  return RefineAbout(options, matches, Eigen::Vector3d::Zero(), prior, pose);
+  return RefineAbout(options, matches, Eigen::Vector3d::Zero(), prior, {}, pose);
 }
 
 RefineSummary Refine(const RefineOptions& options, const Rig& rig,
