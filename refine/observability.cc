@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include <Eigen/Eigenvalues>
+
 #include "rigel/core/angles.h"
 #include "rigel/core/metrics.h"
 #include "rigel/core/pixel_unit.h"
@@ -89,6 +91,31 @@ double ParallaxLimitPx(const RefineOptions& options, const GroupedMatches& match
           ? fit.noise.sigma_px
           : std::max(fit.noise.sigma_px, kMinMatchNoisePx * PixelUnit(matches.rig()));
   return kParallaxSigmas * noise_px;
+}
+
+// True if the inliers of each camera pair lie on a line of the image or in one place, as far as the
+// noise tells. They determine no motion: the linear theory knows only one of those that fit.
+bool OnALine(const GroupedMatches& matches, const Fit& fit) {
+  // Times the noise: the least spread of points that are on no line. A cell of 0.1 m at 10 m has 2.
+  constexpr double kLeastSpread = 5.0;
+  for (size_t g = 0; g < matches.groups().size(); ++g) {
+    const MatchGroup& group = matches.groups()[g];
+    const RayArrays rays = matches.Directions(group);
+    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+    int count = 0;
+    for (int k = 0; k < group.size; ++k) {
+      if (!fit.inliers[group.begin + k]) continue;
+      const Eigen::Vector3d x(rays.x1[k], rays.y1[k], rays.z1[k]);
+      moment += x * x.transpose();
+      ++count;
+    }
+    const double noise = 0.5 * matches.DecidedParallax(group, fit.noise.sigma_of[g]);  // radians
+    const double spread2 =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moment, Eigen::EigenvaluesOnly)
+            .eigenvalues()(0);
+    if (spread2 > kLeastSpread * kLeastSpread * noise * noise * count) return false;
+  }
+  return true;
 }
 
 // What another motion that fits as well leaves of the flags.
@@ -183,6 +210,12 @@ void DescribeObservability(const RefineOptions& options, const GroupedMatches& m
   constexpr double kNearLimit = 0.99;
   SetFlags(summary, b.norm() > kNearLimit * fitter.max_length());
   HeedOtherMotion(body, summary);
+  if (OnALine(matches, fit)) {
+    summary->rotation_observable = summary->translation_observable = false;
+    summary->rig_translation_observable = summary->scale_observable = false;
+    summary->covariance_valid = false;
+    summary->covariance_note = "the points of each camera pair lie on a line or in one place";
+  }
 }
 
 }  // namespace rigel

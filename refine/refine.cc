@@ -9,6 +9,7 @@
 
 #include "rigel/core/frame_pair.h"
 #include "rigel/core/grouped_matches.h"
+#include "rigel/core/metrics.h"
 #include "rigel/core/pixel_unit.h"
 #include "rigel/core/rig_centre.h"
 #include "rigel/refine/fit.h"
@@ -17,6 +18,7 @@
 #include "rigel/refine/observability.h"
 #include "rigel/refine/search/chance.h"
 #include "rigel/refine/search/length_vote.h"
+#include "rigel/refine/search/plane_twin.h"
 #include "rigel/refine/search/shared_pixels.h"
 #include "rigel/refine/search/sign_and_scale.h"
 
@@ -59,10 +61,11 @@ class Refiner {
   bool LengthIsOpen() const;
   double CostOf(const Pose& pose, double threshold_px, double sigma_px) const;
   double VotedLength() const;
-  bool TryLength(double length);
   bool TryOtherLengths();
   bool CheckSign();
+  double DifferenceOfNoise(const Pose& a, const Pose& b, double threshold_px) const;
   bool TryOthers();
+  void TryStart(const Pose& start);
   bool ExceedsChanceAt(double threshold_px) const;
   void Describe(bool done);
   void CountCameraPairs();
@@ -193,21 +196,6 @@ double Refiner::CostOf(const Pose& pose, double threshold_px, double sigma_px) c
          sigma_px * sigma_px * r.squaredNorm();
 }
 
-// Fits from another length, and keeps the better fit.
-bool Refiner::TryLength(double length) {
-  const Fit found = fit_;
-  const RefineSummary summary = summary_;
-  const double threshold = Threshold(), sigma = fit_.noise.sigma_px;  // the same for both
-  fit_.pose.t *= length / fit_.pose.t.norm();
-  if (FitUntilSelectionStays(false) &&
-      CostOf(fit_.pose, threshold, sigma) < CostOf(found.pose, threshold, sigma)) {
-    return true;
-  }
-  fit_ = found;
-  summary_ = summary;
-  return false;
-}
-
 // The length with the best score, of that of the fit and those that the matches vote for. It is
 // looked at with a threshold that forgives what the fit bent for a wrong length.
 double Refiner::VotedLength() const {
@@ -238,11 +226,14 @@ bool Refiner::TryOtherLengths() {
   constexpr double kNear = 1.0;  // of the logarithm: a standard deviation of the weak prior
   if (!GoesOn() || options_.hold_distance) return true;
   const double voted = VotedLength();
-  if (voted != fit_.pose.t.norm()) TryLength(voted);
+  const auto try_length = [this](double length) {
+    TryStart({fit_.pose.R, length / fit_.pose.t.norm() * fit_.pose.t});
+  };
+  if (voted != fit_.pose.t.norm()) try_length(voted);
   if (!GoesOn() || !LengthIsOpen()) return true;
   const double typical =
       prior_.distance.value_or(0.0) > 0 ? *prior_.distance : options_.typical_length;
-  if (std::abs(std::log(typical / fit_.pose.t.norm())) > kNear) TryLength(typical);
+  if (std::abs(std::log(typical / fit_.pose.t.norm())) > kNear) try_length(typical);
   return true;
 }
 
@@ -255,37 +246,79 @@ bool Refiner::CheckSign() {
   return fit_.pose.t == t || FitUntilSelectionStays(false);
 }
 
-// Fits from the other motions that the search found, and keeps the best. Of two that fit alike the
-// other is told.
+// The largest difference of the costs of two motions that noise makes if both are right: they see
+// the noise of each match from other sides (Vuong, Likelihood ratio tests for model selection and
+// non-nested hypotheses, 1989).
+double Refiner::DifferenceOfNoise(const Pose& a, const Pose& b, double threshold_px) const {
+  constexpr double kSigmas = 4.0;
+  const double t2 = threshold_px * threshold_px;
+  std::vector<double> errors[2];
+  std::vector<char> inliers[2];
+  matches_.SelectInliers(a, threshold_px, &errors[0], &inliers[0]);
+  matches_.SelectInliers(b, threshold_px, &errors[1], &inliers[1]);
+  double sum = 0.0, squares = 0.0;
+  for (int k = 0; k < matches_.size(); ++k) {
+    const double d = (inliers[0][k] ? errors[0][k] : t2) - (inliers[1][k] ? errors[1][k] : t2);
+    sum += d;
+    squares += d * d;
+  }
+  return kSigmas * std::sqrt(std::max(0.0, squares - sum * sum / matches_.size()));
+}
+
+// True if two fits ended at one minimum.
+bool IsSameMotion(const Pose& a, const Pose& b) {
+  constexpr double kTurn = 1e-4;    // radians
+  constexpr double kChange = 1e-2;  // of b
+  return RotationError(a.R, b.R) < kTurn && (a.t - b.t).norm() < kChange * a.t.norm();
+}
+
+// Fits from the other motions that the search found, and from the second motion of a plane. Keeps
+// the best. Of two that fit alike the other is told.
 bool Refiner::TryOthers() {
-  // Twice the difference of log likelihoods: of as much noise may make with a probability of 1e-5.
-  constexpr double kAlike = 20.0;
-  // A start that costs more does not end at such a fit.
-  constexpr double kMaxStart = 1.3;
+  // A start that costs more does not end at a fit that is alike.
+  constexpr double kMaxStart = 1.5;
   for (const Pose& body : others_) {
-    if (!GoesOn()) break;
-    const double threshold = Threshold(), sigma = fit_.noise.sigma_px;  // the same for both
-    const double cost = CostOf(fit_.pose, threshold, sigma);
-    const double alike = kAlike * sigma * sigma;
-    const Pose start = MotionOfPoint(body, point_);
-    if (!(CostOf(start, threshold, sigma) < kMaxStart * cost + alike)) continue;
-    Fit found = fit_;
-    RefineSummary summary = summary_;
-    fit_.pose = start;
-    const bool fits = FitUntilSelectionStays(false);
-    const double difference =
-        fits ? CostOf(fit_.pose, threshold, sigma) - cost : std::numeric_limits<double>::infinity();
-    if (!(difference < 0)) {
-      std::swap(fit_, found);
-      std::swap(summary_, summary);
-    }
-    if (std::abs(difference) < alike) {
-      other_ = found.pose;
-    } else if (difference < 0) {
-      other_.reset();
+    Pose start = MotionOfPoint(body, point_);
+    // Of intra-camera matches a length may be anything.
+    if (start.t.norm() > fitter_.max_length()) start.t *= fit_.pose.t.norm() / start.t.norm();
+    if (CostOf(start, Threshold(), fit_.noise.sigma_px) <
+        kMaxStart * CostOf(fit_.pose, Threshold(), fit_.noise.sigma_px)) {
+      TryStart(start);
     }
   }
+  const std::optional<Pose> twin = PlaneTwin(sign_subset_, fit_.pose, fit_.noise.sigma_px);
+  if (twin.has_value()) TryStart(*twin);
   return true;
+}
+
+// Fits from another motion, and keeps the better fit. Of two that are as good within noise it keeps
+// the likelier and tells the other: that with the smaller turn, unless the other is clearly better.
+void Refiner::TryStart(const Pose& start) {
+  constexpr double kClearly = 0.5;  // of the difference that noise makes
+  if (!GoesOn()) return;
+  const double threshold = Threshold(), sigma = fit_.noise.sigma_px;  // the same for both
+  Fit found = fit_;
+  RefineSummary summary = summary_;
+  fit_.pose = start;
+  if (!FitUntilSelectionStays(false) || IsSameMotion(fit_.pose, found.pose)) {
+    std::swap(fit_, found);
+    std::swap(summary_, summary);
+    return;
+  }
+  const double difference =
+      CostOf(fit_.pose, threshold, sigma) - CostOf(found.pose, threshold, sigma);
+  const double of_noise = DifferenceOfNoise(fit_.pose, found.pose, threshold);
+  const bool clear = std::abs(difference) > kClearly * of_noise;
+  const bool better = clear ? difference < 0 : fit_.pose.R.trace() > found.pose.R.trace();
+  if (!better) {
+    std::swap(fit_, found);
+    std::swap(summary_, summary);
+  }
+  if (std::abs(difference) < of_noise) {
+    other_ = found.pose;
+  } else if (better) {
+    other_.reset();
+  }
 }
 
 void Refiner::CountCameraPairs() {
