@@ -31,9 +31,9 @@ struct FramePair {
   double Interval() const { return time1 && time2 ? *time2 - *time1 : 0.0; }
 
   // False with a message if the rig, the prior or a column is invalid or a match names a camera
-  // that is not there, or if a camera fires at another time and time2 is not known to be after
-  // time1. Pixels, times, truth and noise_px must be finite, noise_px also positive.
-  // The score of a match may be NaN: it is then the worst.
+  // that is not there. Cameras that fire at other times need a time2 that is after time1. Pixels,
+  // times, truth and noise_px must be finite, noise_px also positive. The score of a match may be
+  // NaN: it is then the worst.
   bool IsValid(std::string* error) const;
 };
 

@@ -60,9 +60,9 @@ class GroupedMatches {
   // kind only. The draw is the same in each call.
   GroupedMatches DrawnSubset(size_t count) const;
 
-  // Where the cameras of a group are if the rig moves by `pose`: A = Q U, which takes the points of
-  // rows (row_point.h) to directions in the body frame, or with `of_rays` Q alone; and s. These are
-  // those of the rig, except if a camera fires a share a of the interval later. The rig moves with
+  // Where the cameras of a group are if the rig moves by `pose`. A = Q U takes the points of rows
+  // (row_point.h) to directions in the body frame; with `of_rays` it is Q alone. These are those of
+  // the rig, except if a camera fires a share a of the interval later. The rig moves with
   // constant velocity, so both views are then those of a camera at PartOfMotion(pose, -a) (Q, s).
   struct Places {
     Eigen::Matrix3d A1, A2;

@@ -114,7 +114,7 @@ Matrix6d AdjointOfScrew(const Vector6d& screw) {
 // Exp(screw + d) = Exp(J d) Exp(screw) to first order: sum of ad^n / (n + 1)!. Turns are at most
 // pi, so that later terms are below the rounding.
 Matrix6d LeftJacobianOfScrew(const Vector6d& screw) {
-  constexpr int kTerms = 24;
+  constexpr int kTerms = 24;  // pi^24 / 25! is 1e-13
   const Matrix6d ad = AdjointOfScrew(screw);
   Matrix6d term = Matrix6d::Identity(), sum = term;
   for (int n = 1; n < kTerms; ++n) {

@@ -28,7 +28,8 @@ struct RowArrays {
   const double* general = nullptr;
   std::size_t stride = 0;
 };
-inline constexpr int kGeneralArrays = 14;  // two third coordinates, two times six derivatives  // z1, z2, and six for each of J1 and J2
+inline constexpr int kGeneralArrays = 14;  // two third coordinates, two times six derivatives  //
+                                           // z1, z2, and six for each of J1 and J2
 
 // The same rows from `begin` on, `size` of them.
 static RIGEL_KERNEL_BODY RowArrays RowsFrom(const RowArrays& rows, int begin, int size) {

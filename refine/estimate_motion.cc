@@ -220,7 +220,11 @@ void Estimator::Refine() {
   const std::optional<double> left = stop_.SecondsLeft();
   if (left) refine.time_limit = std::min(*left, refine.time_limit.value_or(*left));
   if (refine.cancel == nullptr) refine.cancel = options_.cancel;
-  estimate_.refine = RefineAbout(refine, matches_, centre_, pair_.prior, &estimate_.pose);
+  std::vector<Pose> others;
+  for (int k = 0; k < search_.best.num_others; ++k) {
+    others.push_back(MotionOfBody(search_.best.others[k], centre_));
+  }
+  estimate_.refine = RefineAbout(refine, matches_, centre_, pair_.prior, others, &estimate_.pose);
   estimate_.refine_ms += MillisecondsSince(start);
   if (!Refined()) {
     estimate_.status = EstimateStatus::kNotRefined;

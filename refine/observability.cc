@@ -6,7 +6,10 @@
 #include <limits>
 #include <string>
 
+#include <Eigen/Eigenvalues>
+
 #include "rigel/core/angles.h"
+#include "rigel/core/metrics.h"
 #include "rigel/core/pixel_unit.h"
 #include "rigel/core/rig_centre.h"
 #include "rigel/refine/fit_information.h"
@@ -90,6 +93,51 @@ double ParallaxLimitPx(const RefineOptions& options, const GroupedMatches& match
   return kParallaxSigmas * noise_px;
 }
 
+// True if the inliers of each camera pair lie on a line of the image or in one place, as far as the
+// noise tells. They determine no motion: the linear theory knows only one of those that fit.
+bool OnALine(const GroupedMatches& matches, const Fit& fit) {
+  // Times the noise: the least spread of points that are on no line. A cell of 0.1 m at 10 m has 2.
+  constexpr double kLeastSpread = 5.0;
+  for (size_t g = 0; g < matches.groups().size(); ++g) {
+    const MatchGroup& group = matches.groups()[g];
+    const RayArrays rays = matches.Directions(group);
+    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+    int count = 0;
+    for (int k = 0; k < group.size; ++k) {
+      if (!fit.inliers[group.begin + k]) continue;
+      const Eigen::Vector3d x(rays.x1[k], rays.y1[k], rays.z1[k]);
+      moment += x * x.transpose();
+      ++count;
+    }
+    const double noise = 0.5 * matches.DecidedParallax(group, fit.noise.sigma_of[g]);  // radians
+    const double spread2 =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moment, Eigen::EigenvaluesOnly)
+            .eigenvalues()(0);
+    if (spread2 > kLeastSpread * kLeastSpread * noise * noise * count) return false;
+  }
+  return true;
+}
+
+// What another motion that fits as well leaves of the flags.
+void HeedOtherMotion(const Pose& body, RefineSummary* summary) {
+  if (!summary->other_motion.has_value()) return;
+  constexpr double kSigmas = 3.0;  // closer ones are the same motion
+  const Pose& other = *summary->other_motion;
+  const Eigen::Vector3d b = MotionOfPoint(body, summary->rig_center).t;
+  const Eigen::Vector3d other_b = MotionOfPoint(other, summary->rig_center).t;
+  const bool turns = RotationError(body.R, other.R) > kSigmas * summary->rotation_sigma;
+  const bool leads_elsewhere =
+      TranslationDirectionError(b, other_b) > kSigmas * summary->rig_direction_sigma;
+  const bool is_longer =
+      std::abs(std::log(other_b.norm() / b.norm())) > kSigmas * summary->relative_scale_sigma;
+  if (turns) summary->rotation_observable = false;
+  if (turns || leads_elsewhere) {
+    summary->rig_translation_observable = summary->translation_observable = false;
+  }
+  if (turns || leads_elsewhere || is_longer) summary->scale_observable = false;
+  if (!turns && !leads_elsewhere && !is_longer) summary->other_motion.reset();
+}
+
 void SetFlags(RefineSummary* summary, bool at_limit) {
   if (!summary->covariance || !summary->exceeds_chance) return;
   summary->rotation_observable = RadToDeg(summary->rotation_sigma) <= kRotationObservableDeg;
@@ -161,6 +209,13 @@ void DescribeObservability(const RefineOptions& options, const GroupedMatches& m
   }
   constexpr double kNearLimit = 0.99;
   SetFlags(summary, b.norm() > kNearLimit * fitter.max_length());
+  HeedOtherMotion(body, summary);
+  if (OnALine(matches, fit)) {
+    summary->rotation_observable = summary->translation_observable = false;
+    summary->rig_translation_observable = summary->scale_observable = false;
+    summary->covariance_valid = false;
+    summary->covariance_note = "the points of each camera pair lie on a line or in one place";
+  }
 }
 
 }  // namespace rigel

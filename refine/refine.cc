@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "rigel/core/frame_pair.h"
 #include "rigel/core/grouped_matches.h"
+#include "rigel/core/metrics.h"
 #include "rigel/core/pixel_unit.h"
 #include "rigel/core/rig_centre.h"
 #include "rigel/refine/fit.h"
@@ -14,6 +17,8 @@
 #include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/refine/observability.h"
 #include "rigel/refine/search/chance.h"
+#include "rigel/refine/search/length_vote.h"
+#include "rigel/refine/search/plane_twin.h"
 #include "rigel/refine/search/shared_pixels.h"
 #include "rigel/refine/search/sign_and_scale.h"
 
@@ -25,11 +30,12 @@ namespace {
 class Refiner {
  public:
   Refiner(const RefineOptions& options, bool gate_follows_noise, const GroupedMatches& matches,
-          const Eigen::Vector3d& point, const MotionPrior& prior)
+          const Eigen::Vector3d& point, const MotionPrior& prior, const std::vector<Pose>& others)
       : options_(options),
         matches_(matches),
         point_(point),
         prior_(prior),
+        others_(others),
         sign_subset_(matches.EvenSubset(kSignSubset)),
         fitter_(options, gate_follows_noise, matches, point, prior) {}
 
@@ -40,8 +46,8 @@ class Refiner {
     summary_.num_rounds = 0;
     summary_.num_iterations = 0;
     Start();
-    const bool done = FitUntilSelectionStays(false) && TryTypicalLength() && CheckSign() &&
-                      FitUntilSelectionStays(true);
+    const bool done = FitUntilSelectionStays(false) && TryOtherLengths() && CheckSign() &&
+                      TryOthers() && FitUntilSelectionStays(true);
     Describe(done);
     if (summary_.IsSolutionUsable()) *pose = fit_.pose;
     return summary_;
@@ -54,8 +60,12 @@ class Refiner {
   bool FitUntilSelectionStays(bool exclude_implausible);
   bool LengthIsOpen() const;
   double CostOf(const Pose& pose, double threshold_px, double sigma_px) const;
-  bool TryTypicalLength();
+  double VotedLength() const;
+  bool TryOtherLengths();
   bool CheckSign();
+  double DifferenceOfNoise(const Pose& a, const Pose& b, double threshold_px) const;
+  bool TryOthers();
+  void TryStart(const Pose& start);
   bool ExceedsChanceAt(double threshold_px) const;
   void Describe(bool done);
   void CountCameraPairs();
@@ -70,9 +80,11 @@ class Refiner {
   const GroupedMatches& matches_;
   const Eigen::Vector3d point_;
   const MotionPrior& prior_;
+  const std::vector<Pose>& others_;  // motions of the body
   const GroupedMatches sign_subset_;
   Fitter fitter_;
   Fit fit_;
+  std::optional<Pose> other_;  // of the point, a minimum that fits as well
   RefineSummary summary_;
 };
 
@@ -184,24 +196,44 @@ double Refiner::CostOf(const Pose& pose, double threshold_px, double sigma_px) c
          sigma_px * sigma_px * r.squaredNorm();
 }
 
-// Where the matches leave the length open, the start's is a guess. From a wrong one the fit can end
-// at a false minimum, with |b| as small as the arms of the cameras.
-bool Refiner::TryTypicalLength() {
+// The length with the best score, of that of the fit and those that the matches vote for. It is
+// looked at with a threshold that forgives what the fit bent for a wrong length.
+double Refiner::VotedLength() const {
+  constexpr double kLoose = 3.0;    // thresholds
+  constexpr double kReached = 0.1;  // of the logarithm: the fit has been as far as that
+  const double length = fit_.pose.t.norm();
+  const auto score = [&](double of_length, double bound) {
+    Pose pose = fit_.pose;
+    pose.t *= of_length / length;
+    return matches_.ScoreInFront(pose, kLoose * Threshold(), bound, nullptr);
+  };
+  double best = length;
+  double least = score(length, std::numeric_limits<double>::infinity());
+  for (const double voted : VoteOnLength(matches_, fit_.pose, fit_.noise.sigma_px)) {
+    if (std::abs(std::log(voted / length)) < kReached) continue;
+    const double score_of_voted = score(voted, least);
+    if (!(score_of_voted < least)) continue;
+    least = score_of_voted;
+    best = voted;
+  }
+  return best;
+}
+
+// The length of the start is that of a few matches, and where the matches leave it open a guess.
+// From a wrong one the fit can end at a false minimum, with |b| as small as the arms of the
+// cameras.
+bool Refiner::TryOtherLengths() {
   constexpr double kNear = 1.0;  // of the logarithm: a standard deviation of the weak prior
+  if (!GoesOn() || options_.hold_distance) return true;
+  const double voted = VotedLength();
+  const auto try_length = [this](double length) {
+    TryStart({fit_.pose.R, length / fit_.pose.t.norm() * fit_.pose.t});
+  };
+  if (voted != fit_.pose.t.norm()) try_length(voted);
   if (!GoesOn() || !LengthIsOpen()) return true;
   const double typical =
       prior_.distance.value_or(0.0) > 0 ? *prior_.distance : options_.typical_length;
-  const double ratio = typical / fit_.pose.t.norm();
-  if (std::abs(std::log(ratio)) < kNear) return true;
-  const Fit found = fit_;
-  const RefineSummary summary = summary_;
-  const double threshold = Threshold(), sigma = fit_.noise.sigma_px;  // the same for both
-  fit_.pose.t *= ratio;
-  if (!FitUntilSelectionStays(false) ||
-      !(CostOf(fit_.pose, threshold, sigma) < CostOf(found.pose, threshold, sigma))) {
-    fit_ = found;
-    summary_ = summary;
-  }
+  if (std::abs(std::log(typical / fit_.pose.t.norm())) > kNear) try_length(typical);
   return true;
 }
 
@@ -212,6 +244,81 @@ bool Refiner::CheckSign() {
   const bool possible = ResolveSign(sign_subset_, Threshold(), &fit_.pose);
   if (!possible && LengthIsOpen()) ResolveSignAndScale(sign_subset_, Threshold(), &fit_.pose);
   return fit_.pose.t == t || FitUntilSelectionStays(false);
+}
+
+// The largest difference of the costs of two motions that noise makes if both are right: they see
+// the noise of each match from other sides (Vuong, Likelihood ratio tests for model selection and
+// non-nested hypotheses, 1989).
+double Refiner::DifferenceOfNoise(const Pose& a, const Pose& b, double threshold_px) const {
+  constexpr double kSigmas = 4.0;
+  const double t2 = threshold_px * threshold_px;
+  std::vector<double> errors[2];
+  std::vector<char> inliers[2];
+  matches_.SelectInliers(a, threshold_px, &errors[0], &inliers[0]);
+  matches_.SelectInliers(b, threshold_px, &errors[1], &inliers[1]);
+  double sum = 0.0, squares = 0.0;
+  for (int k = 0; k < matches_.size(); ++k) {
+    const double d = (inliers[0][k] ? errors[0][k] : t2) - (inliers[1][k] ? errors[1][k] : t2);
+    sum += d;
+    squares += d * d;
+  }
+  return kSigmas * std::sqrt(std::max(0.0, squares - sum * sum / matches_.size()));
+}
+
+// True if two fits ended at one minimum.
+bool IsSameMotion(const Pose& a, const Pose& b) {
+  constexpr double kTurn = 1e-4;    // radians
+  constexpr double kChange = 1e-2;  // of b
+  return RotationError(a.R, b.R) < kTurn && (a.t - b.t).norm() < kChange * a.t.norm();
+}
+
+// Fits from the other motions that the search found, and from the second motion of a plane. Keeps
+// the best. Of two that fit alike the other is told.
+bool Refiner::TryOthers() {
+  // A start that costs more does not end at a fit that is alike.
+  constexpr double kMaxStart = 1.5;
+  for (const Pose& body : others_) {
+    Pose start = MotionOfPoint(body, point_);
+    // Of intra-camera matches a length may be anything.
+    if (start.t.norm() > fitter_.max_length()) start.t *= fit_.pose.t.norm() / start.t.norm();
+    if (CostOf(start, Threshold(), fit_.noise.sigma_px) <
+        kMaxStart * CostOf(fit_.pose, Threshold(), fit_.noise.sigma_px)) {
+      TryStart(start);
+    }
+  }
+  const std::optional<Pose> twin = PlaneTwin(sign_subset_, fit_.pose, fit_.noise.sigma_px);
+  if (twin.has_value()) TryStart(*twin);
+  return true;
+}
+
+// Fits from another motion, and keeps the better fit. Of two that are as good within noise it keeps
+// the likelier and tells the other: that with the smaller turn, unless the other is clearly better.
+void Refiner::TryStart(const Pose& start) {
+  constexpr double kClearly = 0.5;  // of the difference that noise makes
+  if (!GoesOn()) return;
+  const double threshold = Threshold(), sigma = fit_.noise.sigma_px;  // the same for both
+  Fit found = fit_;
+  RefineSummary summary = summary_;
+  fit_.pose = start;
+  if (!FitUntilSelectionStays(false) || IsSameMotion(fit_.pose, found.pose)) {
+    std::swap(fit_, found);
+    std::swap(summary_, summary);
+    return;
+  }
+  const double difference =
+      CostOf(fit_.pose, threshold, sigma) - CostOf(found.pose, threshold, sigma);
+  const double of_noise = DifferenceOfNoise(fit_.pose, found.pose, threshold);
+  const bool clear = std::abs(difference) > kClearly * of_noise;
+  const bool better = clear ? difference < 0 : fit_.pose.R.trace() > found.pose.R.trace();
+  if (!better) {
+    std::swap(fit_, found);
+    std::swap(summary_, summary);
+  }
+  if (std::abs(difference) < of_noise) {
+    other_ = found.pose;
+  } else if (better) {
+    other_.reset();
+  }
 }
 
 void Refiner::CountCameraPairs() {
@@ -258,6 +365,7 @@ void Refiner::Describe(bool done) {
     summary_.termination = Termination::kStopped;
     summary_.stopped = fitter_.stop()->reason();
   } else {
+    if (other_.has_value()) summary_.other_motion = MotionOfBody(*other_, point_);
     DescribeObservability(options_, matches_, point_, fitter_, fit_, &summary_);
   }
   summary_.num_inliers = fit_.num_inliers;
@@ -315,7 +423,8 @@ bool RefineOptions::IsValid(std::string* error) const {
 }
 
 RefineSummary RefineAbout(const RefineOptions& options, const GroupedMatches& matches,
-                          const Eigen::Vector3d& origin, const MotionPrior& prior, Pose* pose) {
+                          const Eigen::Vector3d& origin, const MotionPrior& prior,
+                          const std::vector<Pose>& others, Pose* pose) {
   RefineOptions resolved = options;
   const bool gate_follows_noise = options.threshold_px == kAutoThresholdPx;
   resolved.threshold_px = ThresholdPx(options.threshold_px, matches.rig());
@@ -330,8 +439,8 @@ RefineSummary RefineAbout(const RefineOptions& options, const GroupedMatches& ma
   const Eigen::Vector3d point = there ? origin : Eigen::Vector3d(origin + step);
   Pose result = MotionOfPoint(*pose, point);
   RefineSummary summary =
-      there ? Refiner(resolved, gate_follows_noise, matches, point, prior).Run(&result)
-            : Refiner(resolved, gate_follows_noise, matches.WithOrigin(step), point, prior)
+      there ? Refiner(resolved, gate_follows_noise, matches, point, prior, others).Run(&result)
+            : Refiner(resolved, gate_follows_noise, matches.WithOrigin(step), point, prior, others)
                   .Run(&result);
   if (summary.IsSolutionUsable()) *pose = MotionOfBody(result, point);
   return summary;
@@ -339,7 +448,7 @@ RefineSummary RefineAbout(const RefineOptions& options, const GroupedMatches& ma
 
 RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches,
                      const MotionPrior& prior, Pose* pose) {
-  return RefineAbout(options, matches, Eigen::Vector3d::Zero(), prior, pose);
+  return RefineAbout(options, matches, Eigen::Vector3d::Zero(), prior, {}, pose);
 }
 
 RefineSummary Refine(const RefineOptions& options, const Rig& rig,

@@ -177,6 +177,10 @@ struct RefineSummary {
   // Q <- Exp(d) Q (radians), the shift e of s <- s + e (metres), the growth of the focal lengths.
   std::optional<Matrix6d> calibration_covariance;
   std::vector<UnalignedMatrix<6, 7>> calibration_gain;
+  // Another motion of the body that fits as well within what the noise allows: a plane that one
+  // camera sees has two. Where the two differ by more than the standard deviations, nothing that
+  // differs is observable. Looked for among the motions that the search found.
+  std::optional<Pose> other_motion;
   // False if the noise of the pixels makes so much of the information that a linear theory of the
   // errors does not hold: see covariance_note. The covariance is then a rough one.
   bool covariance_valid = false;
@@ -227,9 +231,10 @@ RefineSummary Refine(const RefineOptions& options, const GroupedMatches& matches
 
 // Internal: Refine() for `matches` whose body frame has its origin at the point `origin` of the
 // body. `pose` and the summary are of the body. If `origin` is the rig's centre, the matches are
-// not copied.
+// not copied. `others` are motions of the body that may fit as well as `pose`: the best is taken.
 RefineSummary RefineAbout(const RefineOptions& options, const GroupedMatches& matches,
-                          const Eigen::Vector3d& origin, const MotionPrior& prior, Pose* pose);
+                          const Eigen::Vector3d& origin, const MotionPrior& prior,
+                          const std::vector<Pose>& others, Pose* pose);
 
 }  // namespace rigel
 

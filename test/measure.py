@@ -477,14 +477,38 @@ def rotation_error_deg(motion, truth):
     return math.degrees(norm(rotation_difference(motion, truth)))
 
 
-def difference_nees(one, other):
-    """NEES of the difference of the rotations of two results of rigel_estimate whose errors are
-    independent, or None. Divide by CHI2_MEDIAN[3]: its median is then 1."""
+def difference_covariance(one, other, calibration=None):
+    """The covariance of the difference of the rotations of two results of rigel_estimate whose
+    noise is independent, 3 x 3, or None. `calibration`: the error of the rig's calibration, degrees
+    and metres per axis. It is the same in both, so it moves the difference by the difference of
+    what it does to each: Ca + Cb + (Sa - Sb) E (Sa - Sb)', S the calibration_gain, and Ca and Cb
+    without the calibration_covariance."""
     covariances = [rotation_covariance(pair) for pair in (one, other)]
-    motions = [refined_motion(pair) for pair in (one, other)]
-    if None in covariances or None in motions:
+    if None in covariances:
         return None
-    return nees(rotation_difference(*motions), [add(a, b) for a, b in zip(*covariances)])
+    total = [add(a, b) for a, b in zip(*covariances)]
+    gains = [pair.get("calibration_gain") for pair in (one, other)]
+    if calibration is None or None in gains:
+        return total
+    for pair in (one, other):
+        part = block(pair["calibration_covariance"], 0)
+        total = [[x - y for x, y in zip(row, of_part)] for row, of_part in zip(total, part)]
+    sigmas = 3 * [math.radians(calibration[0])] + 3 * [calibration[1]]
+    for of_a, of_b in zip(*gains):
+        for k, sigma in enumerate(sigmas):
+            moved = [sigma * (of_a[i][k] - of_b[i][k]) for i in range(3)]
+            total = [[x + moved[i] * moved[j] for j, x in enumerate(row)]
+                     for i, row in enumerate(total)]
+    return total
+
+
+def difference_nees(one, other, calibration=None):
+    """NEES of that difference, or None. Divide by CHI2_MEDIAN[3]: its median is then 1."""
+    covariance = difference_covariance(one, other, calibration)
+    motions = [refined_motion(pair) for pair in (one, other)]
+    if covariance is None or None in motions:
+        return None
+    return nees(rotation_difference(*motions), covariance)
 
 
 def rotation_covariance(pair):

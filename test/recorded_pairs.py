@@ -11,17 +11,16 @@ The matches of each pair are split into two parts in three ways:
   kinds    intra-camera matches against matches between cameras. Rows of the two share pixels, so
            their errors are not quite independent
 
-rigel_estimate runs on each part. Printed are the medians over the pairs of the NEES of the
-difference of the rotations, d' (Ca + Cb)^-1 d with d = log(Ra Rb'), over that of chi2 with three
-degrees of freedom: 1 is right, 4 means sigmas two times too small. An error of the calibration is
-in both parts, so Ca + Cb with its term in each states too much of it where it moves both alike.
+rigel_estimate runs on each part, with the error of the calibration stated. Printed are the medians
+over the pairs of the NEES of the difference of the rotations, d' C^-1 d with d = log(Ra Rb'), over
+that of chi2 with three degrees of freedom: 1 is right, 4 means sigmas two times too small. C is the
+sum of the covariances of the noise and (Sa - Sb) E (Sa - Sb)', as the calibration is the same in
+both parts (difference_covariance() in measure.py).
 
   pairs, left out  pairs, and those without a rotation or a valid covariance in one of the parts
   median, p90      of that ratio
   deg              RMS of the difference, degrees
   sd               RMS of its stated standard deviation, degrees
-
-The error of the calibration is stated to programs that take it.
 """
 import math
 import os
@@ -60,7 +59,7 @@ def kinds(file):
 WAYS = {"cameras": cameras, "halves": halves, "kinds": kinds}
 
 
-def measure_way(programs, directory, way, flags):
+def measure_way(programs, directory, way, flags, calibration):
     """The figures of a directory, split in one way."""
     files = [measure.MatchFile(path) for path in measure.match_files(directory)]
     with tempfile.TemporaryDirectory() as folder:
@@ -71,13 +70,14 @@ def measure_way(programs, directory, way, flags):
     ratios, squares, variances = {}, [], []
     for file in files:
         pair = [result.get(file.name, {}) for result in results]
-        value = measure.difference_nees(*pair)
+        covariance = measure.difference_covariance(*pair, calibration)
+        value = measure.difference_nees(*pair, calibration)
         if value is None:
             continue
         ratios[file.name] = value / measure.CHI2_MEDIAN[3]
         difference = measure.rotation_difference(*map(measure.refined_motion, pair))
         squares.append(measure.dot(difference, difference))
-        variances.append(sum(measure.rotation_covariance(p)[k][k] for p in pair for k in range(3)))
+        variances.append(sum(covariance[k][k] for k in range(3)))
 
     def root_deg(values):
         average = measure.mean(values)
@@ -106,9 +106,9 @@ def main():
     if any(way not in WAYS for way in ways):
         parser.error("--ways: expected %s" % ", ".join(WAYS))
     programs = measure.Programs(arguments.bin, arguments.seed, arguments.threads)
-    flags = programs.calibration_error("rigel_estimate", arguments.calibration_sigma_deg,
-                                       arguments.calibration_sigma_m)
-    results = [measure_way(programs, directory, way, flags)
+    calibration = arguments.calibration_sigma_deg, arguments.calibration_sigma_m
+    flags = programs.calibration_error("rigel_estimate", *calibration)
+    results = [measure_way(programs, directory, way, flags, calibration)
                for directory in arguments.matches.split(",") for way in ways]
     members = ["matches", "way", "pairs", "left_out", "median", "p90", "difference_deg", "sd_deg"]
     measure.print_table(["rotation, NEES over that of chi2", "way", "pairs", "left out", "median",

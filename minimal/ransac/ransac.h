@@ -31,6 +31,10 @@ struct RansacResult {
   Model best;          // after local optimization
   double score = 0.0;  // of `best`
   int num_inliers = 0;
+  // Optimized finalists that are not similar to `best` and have nearly its score: other minima.
+  static constexpr int kMaxOthers = 2;
+  Model others[kMaxOthers];
+  int num_others = 0;
   // The best-scoring minimal hypothesis of the run, before any optimization.
   Model best_minimal;
   double minimal_score = 0.0;
@@ -180,14 +184,21 @@ class RansacRun {
     // number of finalists: each takes the time of a local optimization, and one that fails says
     // little of the next. What finalists give and take: rigel_benchmark --ransac=ablation.
     constexpr int kMaxWorse = 2;
+    // Scores of motions that fit the same inliers about as well differ by less.
+    constexpr double kAlike = 1.2;
     int num_worse = 0;
+    result_.num_others = 0;
     for (int k = capacity_ > 0 ? -1 : 0; k < finalists_.size && result_.found; ++k) {
       Model model = k < 0 ? best : finalists_.items[k].model;
       if ((k >= 0 && solver_.Similar(model, best)) || !solver_.OptimizeLoosely(&model)) continue;
       int inliers = 0;
       const double before = result_.score;
-      const double score = FullScore(model, result_.score, &inliers);
+      const Model best_before = result_.best;
+      const double score = FullScore(model, kAlike * before, &inliers);
       KeepBest(model, score, inliers);
+      if (score <= kAlike * before && before <= kAlike * score) {
+        KeepOther(score < before ? best_before : model);
+      }
       // The finalists are in the order of their scores: the rest is unlikely to improve.
       if (k >= 0 && !(result_.score < before) && ++num_worse == kMaxWorse) break;
     }
@@ -217,6 +228,11 @@ class RansacRun {
     result_.num_inliers = inliers;
     needed_ = IterationsNeeded(inliers / static_cast<double>(solver_.num_data()),
                                solver_.sample_size(), options_.confidence, options_.max_iterations);
+  }
+
+  void KeepOther(const Model& model) {
+    if (result_.num_others == RansacResult<Model>::kMaxOthers) return;
+    if (!solver_.Similar(model, result_.best)) result_.others[result_.num_others++] = model;
   }
 
   void OptimizeBest() {

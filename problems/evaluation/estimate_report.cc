@@ -120,6 +120,7 @@ void PutRefined(const MotionEstimate& e, Json* entry) {
                             {"noise_px", fit.noise_px}});
   }
   for (const RigDoubt& doubt : e.rig_doubts) (*entry)["rig_doubts"].push_back(doubt.message);
+  if (refine.other_motion) (*entry)["other_motion"] = MotionJson(*refine.other_motion);
   PutUncertainty(refine, entry);
 }
 

@@ -16,8 +16,9 @@ namespace rigel {
 using RowMajor3d = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 using ByMotionMatrix = Eigen::Matrix<double, 9, 6>;
 
-// A camera has seven errors: the turn d of Q <- Exp(d) Q (radians, about the axes of the body), the
-// shift e of s <- s + e (metres), and the growth of the focal lengths by a fraction.
+// A camera has seven errors. The first three are the turn d of Q <- Exp(d) Q, in radians about the
+// axes of the body, the next three the shift e of s <- s + e, in metres. The last is the growth of
+// the focal lengths by a fraction.
 inline constexpr int kCameraErrors = 7;
 using ByCalibrationMatrix = Eigen::Matrix<double, 9, 2 * kCameraErrors>;
 

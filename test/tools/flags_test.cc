@@ -15,7 +15,9 @@ using testing::Not;
 using testing::StartsWith;
 
 // DESIGN.md, section 10, and --loss.
-const Args kEstimationFlags = {"confidence",
+const Args kEstimationFlags = {"calibration_sigma_deg",
+                               "calibration_sigma_m",
+                               "confidence",
                                "down",
                                "typical_length",
                                "fix_translation_norm",
@@ -53,10 +55,34 @@ std::map<std::string, Args> FlagsOfTools() {
        {"euroc_root", "features", "first", "kitti_root", "last", "max_features", "output", "ratio",
         "resume", "sequence", "stride", "sync_tolerance_ms", "threads"}},
       {"simulate",
-       {"camera_noise_px", "distance_m",   "every",       "ground_m", "inter_share", "match_scores",
-        "motion",          "moving_share", "noise_model", "noise_px", "num_cameras", "num_matches",
-        "outlier_share",   "output",       "pairs",       "poses",    "rig",         "ring",
-        "rotation_axis",   "rotation_deg", "scene",       "seed",     "threads"}}};
+       {"calibration_sigma_deg",
+        "calibration_sigma_m",
+        "camera_noise_px",
+        "camera_times",
+        "distance_m",
+        "every",
+        "ground_m",
+        "inter_share",
+        "interval_s",
+        "match_scores",
+        "motion",
+        "moving_share",
+        "noise_model",
+        "noise_px",
+        "num_cameras",
+        "num_matches",
+        "outlier_share",
+        "output",
+        "pairs",
+        "poses",
+        "rig",
+        "ring",
+        "rotation_axis",
+        "rotation_deg",
+        "scene",
+        "seed",
+        "state_calibration_sigma",
+        "threads"}}};
 }
 
 // A run that would succeed but for what is added to it and that the files are not there, nor can be
