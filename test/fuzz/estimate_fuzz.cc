@@ -8,7 +8,6 @@
 
 #include "rigel/minimal/catalogue.h"
 #include "rigel/refine/estimate_motion.h"
-#include "rigel/test/core/pinhole.h"
 #include "rigel/test/fuzz/fuzz.h"
 
 namespace {
@@ -41,6 +40,11 @@ rigel::Rig MakeRig(Bytes* bytes) {
         bytes->Chance(200) ? camera.intrinsics.fx() : bytes->Double(1, 1000);
     camera.intrinsics.parameters[2] = bytes->Double(0, 640);
     camera.intrinsics.parameters[3] = bytes->Double(0, 480);
+    // Pixels may lie outside the circle of this lens.
+    if (bytes->Chance(64)) {
+      camera.intrinsics.model = rigel::CameraModel::kOpencvFisheye;
+      for (int i = 4; i < 8; ++i) camera.intrinsics.parameters[i] = bytes->Double(-0.1, 0.1);
+    }
     camera.Q = Rotation(bytes);
     // Far origins too: UTM coordinates.
     const double reach = bytes->Chance(16) ? 5e6 : 1.0;
@@ -94,8 +98,9 @@ std::vector<rigel::Match> MakeMatches(const rigel::Rig& rig, const rigel::Pose& 
       const rigel::RigCamera& to = rig.cameras[match.camera2];
       const Eigen::Vector3d ray = from.Q * AlongRay(from.intrinsics, match.pixel1);
       const Eigen::Vector3d X = from.s + (near + depth * kind / 180.0) * ray;
-      match.pixel2 = ProjectPinhole(to.intrinsics, to.Q.transpose() * (motion * X - to.s)) +
-                     noise * Eigen::Vector2d{bytes->Uniform(-1, 1), bytes->Uniform(-1, 1)};
+      if (Project(to.intrinsics, to.Q.transpose() * (motion * X - to.s), &match.pixel2)) {
+        match.pixel2 += noise * Eigen::Vector2d{bytes->Uniform(-1, 1), bytes->Uniform(-1, 1)};
+      }
     } else if (kind < 190 && !matches.empty()) {
       match = matches[bytes->Choice(static_cast<int>(matches.size()))];
     } else if (kind < 200) {
