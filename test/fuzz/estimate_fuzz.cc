@@ -40,11 +40,6 @@ rigel::Rig MakeRig(Bytes* bytes) {
         bytes->Chance(200) ? camera.intrinsics.fx() : bytes->Double(1, 1000);
     camera.intrinsics.parameters[2] = bytes->Double(0, 640);
     camera.intrinsics.parameters[3] = bytes->Double(0, 480);
-    // Pixels may lie outside the circle of this lens.
-    if (bytes->Chance(64)) {
-      camera.intrinsics.model = rigel::CameraModel::kOpencvFisheye;
-      for (int i = 4; i < 8; ++i) camera.intrinsics.parameters[i] = bytes->Double(-0.1, 0.1);
-    }
     camera.Q = Rotation(bytes);
     // Far origins too: UTM coordinates.
     const double reach = bytes->Chance(16) ? 5e6 : 1.0;
@@ -192,6 +187,15 @@ void AddLaterOptions(Bytes* bytes, Options* options, rigel::MotionPrior* prior) 
   options->estimate.refine.typical_length = options->refine.typical_length;
 }
 
+// Some become fisheyes. Pixels may then lie outside the circle of the lens.
+void AddLenses(Bytes* bytes, rigel::Rig* rig) {
+  for (rigel::RigCamera& camera : rig->cameras) {
+    if (bytes->Chance(192)) continue;
+    camera.intrinsics.model = rigel::CameraModel::kOpencvFisheye;
+    for (int i = 4; i < 8; ++i) camera.intrinsics.parameters[i] = bytes->Double(-0.1, 0.1);
+  }
+}
+
 void RequireSound(const rigel::RefineSummary& summary, size_t num_matches) {
   Require(!summary.message.empty(), "the refinement says what it did");
   summary.BriefReport();
@@ -216,6 +220,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const rigel::Pose motion = MakeMotion(&bytes);
   pair.prior = MakePrior(&bytes);
   AddLaterOptions(&tail, &options, &pair.prior);
+  AddLenses(&tail, &pair.rig);
   if (bytes.Chance(40)) pair.noise_px = bytes.Double(0, 2);
   if (bytes.Chance(40)) pair.time1 = bytes.AnyDouble();
   if (bytes.Chance(40)) pair.time2 = bytes.AnyDouble();
