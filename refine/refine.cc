@@ -46,8 +46,8 @@ class Refiner {
     summary_.num_rounds = 0;
     summary_.num_iterations = 0;
     Start();
-    const bool done = FitUntilSelectionStays(false) && TryOtherLengths() && CheckSign() &&
-                      TryOthers() && FitUntilSelectionStays(true);
+    const bool done = FitUntilSelectionStays(false) && TryOtherLengths() && TryOthers() &&
+                      FitUntilSelectionStays(true);
     Describe(done);
     if (summary_.IsSolutionUsable()) *pose = fit_.pose;
     return summary_;
@@ -62,7 +62,6 @@ class Refiner {
   double CostOf(const Pose& pose, double threshold_px, double sigma_px) const;
   double VotedLength() const;
   bool TryOtherLengths();
-  bool CheckSign();
   double DifferenceOfNoise(const Pose& a, const Pose& b, double threshold_px) const;
   bool TryOthers();
   void TryStart(const Pose& start);
@@ -126,8 +125,6 @@ void Refiner::Start() {
         WithBodyLength(MotionOfBody(fit_.pose, point_), center + point_, *prior_.distance);
     fit_.pose = MotionOfPoint(body, point_);
   }
-  fitter_.Select(false, &fit_);
-  if (LengthIsOpen()) ResolveSignAndScale(sign_subset_, Threshold(), &fit_.pose);
 }
 
 // A start without translation has no direction: the best fit from six.
@@ -237,20 +234,11 @@ bool Refiner::TryOtherLengths() {
   return true;
 }
 
-// With another sign or length, t is not at a minimum: a fit from there.
-bool Refiner::CheckSign() {
-  if (!GoesOn()) return true;
-  const Eigen::Vector3d t = fit_.pose.t;
-  const bool possible = ResolveSign(sign_subset_, Threshold(), &fit_.pose);
-  if (!possible && LengthIsOpen()) ResolveSignAndScale(sign_subset_, Threshold(), &fit_.pose);
-  return fit_.pose.t == t || FitUntilSelectionStays(false);
-}
-
 // The largest difference of the costs of two motions that noise makes if both are right: they see
 // the noise of each match from other sides (Vuong, Likelihood ratio tests for model selection and
 // non-nested hypotheses, 1989).
 double Refiner::DifferenceOfNoise(const Pose& a, const Pose& b, double threshold_px) const {
-  constexpr double kSigmas = 4.0;
+  constexpr double kSigmas = 3.0;
   const double t2 = threshold_px * threshold_px;
   std::vector<double> errors[2];
   std::vector<char> inliers[2];
