@@ -71,17 +71,8 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
     const RowPoint points[2] = {RowPointOf(rig.cameras[m.camera1], m.pixel1),
                                 RowPointOf(rig.cameras[m.camera2], m.pixel2)};
     for (int side = 0; side < 2; ++side) {
-      const RowPoint& point = points[side];
-      double* row = rows_.data() + k;
-      row[2 * side * n] = point.p.x();
-      row[(2 * side + 1) * n] = point.p.y();
-      if (!general_) continue;
-      row += 4 * n;
-      row[side * n] = point.p.z();
       const double factor = sigmas[side]->empty() ? 1.0 : (*sigmas[side])[original_[k]] / typical;
-      for (int i = 0; i < 6; ++i) {
-        row[(2 + 6 * side + i) * n] = factor * point.J(i / 2, i % 2);
-      }
+      SetPoint(k, side, points[side], factor, n);
     }
     const RayPair rays = MakeRayPair(rig, m);
     for (int i = 0; i < 3; ++i) {
@@ -89,6 +80,16 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
       directions_[(3 + i) * n + k] = rays.ray2.x[i];
     }
   }
+}
+
+void GroupedMatches::SetPoint(size_t k, int side, const RowPoint& point, double factor, size_t n) {
+  double* row = rows_.data() + k;
+  row[2 * side * n] = point.p.x();
+  row[(2 * side + 1) * n] = point.p.y();
+  if (!general_) return;
+  row += 4 * n;
+  row[side * n] = point.p.z();
+  for (int i = 0; i < 6; ++i) row[(2 + 6 * side + i) * n] = factor * point.J(i / 2, i % 2);
 }
 
 GroupedMatches GroupedMatches::WithOrigin(const Eigen::Vector3d& origin) const {

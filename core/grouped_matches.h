@@ -122,6 +122,8 @@ class GroupedMatches {
   std::vector<size_t> StretchBegins(size_t count) const;
   GroupedMatches Subset(const std::vector<size_t>& taken) const;
   RowPoint PointAt(int k, int side) const;
+  // Of n matches; `factor` times its derivatives.
+  void SetPoint(size_t k, int side, const RowPoint& point, double factor, size_t n);
 
   Rig rig_;
   std::vector<MatchGroup> groups_;
