@@ -265,10 +265,14 @@ double GroupedMatches::Score(const Pose& pose, double threshold_px, double bound
   return sum;
 }
 
-double GroupedMatches::DecidedParallax(const MatchGroup& group, double threshold_px) const {
+double GroupedMatches::RadiansPerPixel(const MatchGroup& group) const {
   const PinholeCamera& c1 = rig_.cameras[group.camera1].intrinsics;
   const PinholeCamera& c2 = rig_.cameras[group.camera2].intrinsics;
-  return 2.0 * threshold_px / std::min({c1.fx, c1.fy, c2.fx, c2.fy});
+  return 1.0 / std::min({c1.fx, c1.fy, c2.fx, c2.fy});
+}
+
+double GroupedMatches::DecidedParallax(const MatchGroup& group, double threshold_px) const {
+  return 2.0 * threshold_px * RadiansPerPixel(group);
 }
 
 double GroupedMatches::ScoreInFront(const Pose& pose, double threshold_px, double bound,

@@ -110,6 +110,9 @@ class GroupedMatches {
   // The rays of the match at grouped position k in the body frames.
   RayPair rays(int k) const;
 
+  // The angle of a pixel of the group's camera with the shorter focal length, radians.
+  double RadiansPerPixel(const MatchGroup& group) const;
+
   // The sine of the parallax above which depths of the group are decided: noise of this threshold
   // cannot cause a larger one.
   double DecidedParallax(const MatchGroup& group, double threshold_px) const;

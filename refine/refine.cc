@@ -104,6 +104,9 @@ bool Refiner::Check(const Pose& start) {
       !(start.R.determinant() > 0)) {
     return fail("the start's R is not a rotation");
   }
+  if (matches_.HasTimes() && options_.form == RefineForm::kBundle) {
+    return fail("the form 'bundle' does not know of cameras that fire at other times");
+  }
   if (matches_.size() == 0) {
     summary_.termination = Termination::kDegenerate;
     summary_.message = "0 inliers";

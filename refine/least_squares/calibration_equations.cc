@@ -4,29 +4,21 @@
 
 namespace rigel {
 
-void CalibrationEquations::Add(const SampsonKernelOptions& options, const GroupedMatches& matches,
+void AddCalibrationDerivatives(const SampsonKernelOptions& options, const GroupedMatches& matches,
                                const MatchGroup& group, const double* weights, const Pose& pose,
-                               double factor) {
+                               double factor, CalibrationDerivatives* sum) {
   const RowMajor3d F = matches.Fundamental(group, pose);
   SampsonSums sums;
   SumSampson(options, matches.Rows(group), weights, F.data(), Rounding2(F), SampsonParts::kAll,
              &sums);
   const Eigen::Map<const Eigen::Matrix<double, 9, 9>> H(sums.H);
-  const ByMotionMatrix M = FundamentalByMotion(matches, group, pose, false);
-  const ByCalibrationMatrix E = FundamentalByCalibration(matches, group, pose);
-  const ByCalibrationMatrix HE = factor * H * E;
-  motion += factor * M.transpose() * H * M;
-  const Eigen::Matrix<double, 6, 2 * kCameraErrors> cross_here = M.transpose() * HE;
-  const Eigen::Matrix<double, 2 * kCameraErrors, 2 * kCameraErrors> own_here = E.transpose() * HE;
-  const int at[2] = {kCameraErrors * group.camera1, kCameraErrors * group.camera2};
-  for (int a = 0; a < 2; ++a) {
-    cross.middleCols<kCameraErrors>(at[a]) +=
-        cross_here.middleCols<kCameraErrors>(kCameraErrors * a);
-    for (int c = 0; c < 2; ++c) {
-      own.block<kCameraErrors, kCameraErrors>(at[a], at[c]) +=
-          own_here.block<kCameraErrors, kCameraErrors>(kCameraErrors * a, kCameraErrors * c);
-    }
-  }
+  const Eigen::Matrix<double, 6, 2 * kCameraErrors> of_group =
+      factor * FundamentalByMotion(matches, group, pose, false).transpose() * H *
+      FundamentalByCalibration(matches, group, pose);
+  sum->middleCols<kCameraErrors>(kCameraErrors * group.camera1) +=
+      of_group.leftCols<kCameraErrors>();
+  sum->middleCols<kCameraErrors>(kCameraErrors * group.camera2) +=
+      of_group.rightCols<kCameraErrors>();
 }
 
 }  // namespace rigel

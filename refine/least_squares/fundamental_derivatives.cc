@@ -35,7 +35,8 @@ Eigen::Matrix<double, 9, 12> ByPlaces(const Factors& f, const Eigen::Matrix3d& R
 
 RowMajor3d FundamentalOf(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
                          bool of_rays) {
-  const Factors f(matches.PlacesOf(group, pose, of_rays), pose);
+  if (!of_rays) return matches.Fundamental(group, pose);
+  const Factors f(matches.PlacesOf(group, pose, true), pose);
   return f.left.transpose() * Skew(f.b) * f.right;
 }
 
@@ -70,7 +71,7 @@ ByCalibrationMatrix FundamentalByCalibration(const GroupedMatches& matches, cons
   D.leftCols<6>() = by_places.leftCols<6>();
   D.middleCols<6>(kCameraErrors) = by_places.rightCols<6>();
   if (matches.Rows(group).general != nullptr) return D;
-  const RowMajor3d F = f.left.transpose() * Skew(f.b) * f.right;
+  const RowMajor3d F = matches.Fundamental(group, pose);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       // U = diag(1 / fx, 1 / fy, 1).
