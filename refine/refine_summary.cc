@@ -67,7 +67,18 @@ std::string RefineSummary::ObservabilityReport() const {
     return "it is not known what is observable: the refinement was not done (" + message + ")";
   }
   char text[256];
+  if (other_motion.has_value() && !translation_observable) {
+    const double turn = RadToDeg(LogSO3(other_motion->R).norm());
+    std::snprintf(text, sizeof(text),
+                  "another motion fits as well, a turn by %.1f deg: of a plane, two motions do",
+                  turn);
+    return text;
+  }
   if (!rotation_observable && exceeds_chance) {
+    // Of points on a line the linear theory states a sigma that means nothing.
+    if (!covariance_valid && RadToDeg(rotation_sigma) <= kRotationObservableDeg) {
+      return "the motion is not observable: " + covariance_note;
+    }
     if (rotation_sigma >= 0 && RadToDeg(rotation_sigma) < 180) {
       std::snprintf(text, sizeof(text), "the standard deviation of the rotation is %.1f deg",
                     RadToDeg(rotation_sigma));
