@@ -283,9 +283,8 @@ bool Refiner::TryOthers() {
 }
 
 // Fits from another motion, and keeps the better fit. Of two that are as good within noise it keeps
-// the likelier and tells the other: that with the smaller turn, unless the other is clearly better.
+// that with the smaller turn and tells the other.
 void Refiner::TryStart(const Pose& start) {
-  constexpr double kClearly = 0.5;  // of the difference that noise makes
   if (!GoesOn()) return;
   const double threshold = Threshold(), sigma = fit_.noise.sigma_px;  // the same for both
   Fit found = fit_;
@@ -298,14 +297,13 @@ void Refiner::TryStart(const Pose& start) {
   }
   const double difference =
       CostOf(fit_.pose, threshold, sigma) - CostOf(found.pose, threshold, sigma);
-  const double of_noise = DifferenceOfNoise(fit_.pose, found.pose, threshold);
-  const bool clear = std::abs(difference) > kClearly * of_noise;
-  const bool better = clear ? difference < 0 : fit_.pose.R.trace() > found.pose.R.trace();
+  const bool alike = std::abs(difference) < DifferenceOfNoise(fit_.pose, found.pose, threshold);
+  const bool better = alike ? fit_.pose.R.trace() > found.pose.R.trace() : difference < 0;
   if (!better) {
     std::swap(fit_, found);
     std::swap(summary_, summary);
   }
-  if (std::abs(difference) < of_noise) {
+  if (alike) {
     other_ = found.pose;
   } else if (better) {
     other_.reset();
