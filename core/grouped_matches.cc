@@ -111,18 +111,20 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
       const Eigen::Vector3d x = side == 0 ? DirectionOf(rig.cameras[m.camera1], m.pixel1, point)
                                           : DirectionOf(rig.cameras[m.camera2], m.pixel2, point);
       for (int i = 0; i < 3; ++i) directions_[(3 * side + i) * n + k] = x[i];
-      double* row = rows_.data() + k;
-      row[2 * side * n] = point.p.x();
-      row[(2 * side + 1) * n] = point.p.y();
-      if (!general_) continue;
-      row += 4 * n;
-      row[side * n] = point.p.z();
       const double factor = sigmas[side]->empty() ? 1.0 : (*sigmas[side])[original_[k]] / typical;
-      for (int i = 0; i < 6; ++i) {
-        row[(2 + 6 * side + i) * n] = factor * point.J(i / 2, i % 2);
-      }
+      SetPoint(k, side, point, factor, n);
     }
   }
+}
+
+void GroupedMatches::SetPoint(size_t k, int side, const RowPoint& point, double factor, size_t n) {
+  double* row = rows_.data() + k;
+  row[2 * side * n] = point.p.x();
+  row[(2 * side + 1) * n] = point.p.y();
+  if (!general_) return;
+  row += 4 * n;
+  row[side * n] = point.p.z();
+  for (int i = 0; i < 6; ++i) row[(2 + 6 * side + i) * n] = factor * point.J(i / 2, i % 2);
 }
 
 GroupedMatches GroupedMatches::WithOrigin(const Eigen::Vector3d& origin) const {
@@ -299,10 +301,14 @@ double GroupedMatches::Score(const Pose& pose, double threshold_px, double bound
   return sum;
 }
 
-double GroupedMatches::DecidedParallax(const MatchGroup& group, double threshold_px) const {
+double GroupedMatches::RadiansPerPixel(const MatchGroup& group) const {
   const Pixel scale1 = rig_.cameras[group.camera1].intrinsics.PixelsPerRadian();
   const Pixel scale2 = rig_.cameras[group.camera2].intrinsics.PixelsPerRadian();
-  return 2.0 * threshold_px / std::min(scale1.minCoeff(), scale2.minCoeff());
+  return 1.0 / std::min(scale1.minCoeff(), scale2.minCoeff());
+}
+
+double GroupedMatches::DecidedParallax(const MatchGroup& group, double threshold_px) const {
+  return 2.0 * threshold_px * RadiansPerPixel(group);
 }
 
 double GroupedMatches::ScoreInFront(const Pose& pose, double threshold_px, double bound,

@@ -112,6 +112,9 @@ class GroupedMatches {
   // The rays of the match at grouped position k in the body frames.
   RayPair rays(int k) const;
 
+  // The angle of a pixel of the group's camera with the shorter focal length, radians.
+  double RadiansPerPixel(const MatchGroup& group) const;
+
   // The sine of the parallax above which depths of the group are decided: noise of this threshold
   // cannot cause a larger one.
   double DecidedParallax(const MatchGroup& group, double threshold_px) const;
@@ -124,6 +127,8 @@ class GroupedMatches {
   std::vector<size_t> StretchBegins(size_t count) const;
   GroupedMatches Subset(const std::vector<size_t>& taken) const;
   RowPoint PointAt(int k, int side) const;
+  // Of n matches; `factor` times its derivatives.
+  void SetPoint(size_t k, int side, const RowPoint& point, double factor, size_t n);
 
   Rig rig_;
   std::vector<MatchGroup> groups_;

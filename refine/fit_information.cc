@@ -201,18 +201,18 @@ void AddCalibration(const FittedInliers& fit, const GroupedMatches& matches,
                   [](const RigCamera& camera) { return VariancesOf(camera).isZero(0.0); })) {
     return;
   }
-  CalibrationEquations equations(matches.rig().size());
+  CalibrationDerivatives& by_calibration = information->by_calibration;
+  by_calibration.setZero(6, kCameraErrors * matches.rig().size());
   for (size_t g = 0; g < matches.groups().size(); ++g) {
     const MatchGroup& group = matches.groups()[g];
     SampsonKernelOptions options;
     options.loss = fit.loss;
     options.loss_scale = fit.loss_scale_sigmas * noise.sigma_of[g];
-    equations.Add(options, matches, group, fit.factors.data() + group.begin, pose,
-                  1.0 / (noise.sigma_of[g] * noise.sigma_of[g]));
+    AddCalibrationDerivatives(options, matches, group, fit.factors.data() + group.begin, pose,
+                              1.0 / (noise.sigma_of[g] * noise.sigma_of[g]), &by_calibration);
   }
-  information->by_calibration = equations.cross;
   for (size_t k = 0; k < cameras.size(); ++k) {
-    const auto X = equations.cross.middleCols<kCameraErrors>(static_cast<long>(k) * kCameraErrors);
+    const auto X = by_calibration.middleCols<kCameraErrors>(static_cast<long>(k) * kCameraErrors);
     information->calibration += X * VariancesOf(cameras[k]).asDiagonal() * X.transpose();
   }
 }

@@ -109,7 +109,7 @@ bool OnALine(const GroupedMatches& matches, const Fit& fit) {
       moment += x * x.transpose();
       ++count;
     }
-    const double noise = 0.5 * matches.DecidedParallax(group, fit.noise.sigma_of[g]);  // radians
+    const double noise = fit.noise.sigma_of[g] * matches.RadiansPerPixel(group);
     const double spread2 =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moment, Eigen::EigenvaluesOnly)
             .eigenvalues()(0);

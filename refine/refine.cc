@@ -46,8 +46,8 @@ class Refiner {
     summary_.num_rounds = 0;
     summary_.num_iterations = 0;
     Start();
-    const bool done = FitUntilSelectionStays(false) && TryOtherLengths() && CheckSign() &&
-                      TryOthers() && FitUntilSelectionStays(true);
+    const bool done = FitUntilSelectionStays(false) && TryOtherLengths() && TryOthers() &&
+                      FitUntilSelectionStays(true);
     Describe(done);
     if (summary_.IsSolutionUsable()) *pose = fit_.pose;
     return summary_;
@@ -62,7 +62,6 @@ class Refiner {
   double CostOf(const Pose& pose, double threshold_px, double sigma_px) const;
   double VotedLength() const;
   bool TryOtherLengths();
-  bool CheckSign();
   double DifferenceOfNoise(const Pose& a, const Pose& b, double threshold_px) const;
   bool TryOthers();
   void TryStart(const Pose& start);
@@ -105,6 +104,9 @@ bool Refiner::Check(const Pose& start) {
       !(start.R.determinant() > 0)) {
     return fail("the start's R is not a rotation");
   }
+  if (matches_.HasTimes() && options_.form == RefineForm::kBundle) {
+    return fail("the form 'bundle' does not know of cameras that fire at other times");
+  }
   if (matches_.size() == 0) {
     summary_.termination = Termination::kDegenerate;
     summary_.message = "0 inliers";
@@ -126,8 +128,6 @@ void Refiner::Start() {
         WithBodyLength(MotionOfBody(fit_.pose, point_), center + point_, *prior_.distance);
     fit_.pose = MotionOfPoint(body, point_);
   }
-  fitter_.Select(false, &fit_);
-  if (LengthIsOpen()) ResolveSignAndScale(sign_subset_, Threshold(), &fit_.pose);
 }
 
 // A start without translation has no direction: the best fit from six.
@@ -237,20 +237,11 @@ bool Refiner::TryOtherLengths() {
   return true;
 }
 
-// With another sign or length, t is not at a minimum: a fit from there.
-bool Refiner::CheckSign() {
-  if (!GoesOn()) return true;
-  const Eigen::Vector3d t = fit_.pose.t;
-  const bool possible = ResolveSign(sign_subset_, Threshold(), &fit_.pose);
-  if (!possible && LengthIsOpen()) ResolveSignAndScale(sign_subset_, Threshold(), &fit_.pose);
-  return fit_.pose.t == t || FitUntilSelectionStays(false);
-}
-
 // The largest difference of the costs of two motions that noise makes if both are right: they see
 // the noise of each match from other sides (Vuong, Likelihood ratio tests for model selection and
 // non-nested hypotheses, 1989).
 double Refiner::DifferenceOfNoise(const Pose& a, const Pose& b, double threshold_px) const {
-  constexpr double kSigmas = 4.0;
+  constexpr double kSigmas = 3.0;
   const double t2 = threshold_px * threshold_px;
   std::vector<double> errors[2];
   std::vector<char> inliers[2];
@@ -292,9 +283,8 @@ bool Refiner::TryOthers() {
 }
 
 // Fits from another motion, and keeps the better fit. Of two that are as good within noise it keeps
-// the likelier and tells the other: that with the smaller turn, unless the other is clearly better.
+// that with the smaller turn and tells the other.
 void Refiner::TryStart(const Pose& start) {
-  constexpr double kClearly = 0.5;  // of the difference that noise makes
   if (!GoesOn()) return;
   const double threshold = Threshold(), sigma = fit_.noise.sigma_px;  // the same for both
   Fit found = fit_;
@@ -307,14 +297,13 @@ void Refiner::TryStart(const Pose& start) {
   }
   const double difference =
       CostOf(fit_.pose, threshold, sigma) - CostOf(found.pose, threshold, sigma);
-  const double of_noise = DifferenceOfNoise(fit_.pose, found.pose, threshold);
-  const bool clear = std::abs(difference) > kClearly * of_noise;
-  const bool better = clear ? difference < 0 : fit_.pose.R.trace() > found.pose.R.trace();
+  const bool alike = std::abs(difference) < DifferenceOfNoise(fit_.pose, found.pose, threshold);
+  const bool better = alike ? fit_.pose.R.trace() > found.pose.R.trace() : difference < 0;
   if (!better) {
     std::swap(fit_, found);
     std::swap(summary_, summary);
   }
-  if (std::abs(difference) < of_noise) {
+  if (alike) {
     other_ = found.pose;
   } else if (better) {
     other_.reset();

@@ -222,7 +222,8 @@ static_assert(kSameLayoutEverywhere<RefineSummary>, "no member of RefineSummary 
 
 // Refines `pose` (f2_from_f1 of the body, metres), which must be near the true motion. `pose` must
 // not be null. Never throws, exits or logs. On kDegenerate and kFailure `pose` is unchanged and the
-// summary has a message. Thread-safe; deterministic unless stopped.
+// summary has a message. Thread-safe; deterministic unless stopped. Times of cameras and columns of
+// matches are left out: EstimateMotion() takes them.
 RefineSummary Refine(const RefineOptions& options, const Rig& rig,
                      const std::vector<Match>& matches, const MotionPrior& prior, Pose* pose);
 // Internal: the same for matches that are grouped already.

@@ -62,27 +62,41 @@ const CameraPairFit* RefineSummary::OnlyCameraPair() const {
   return only != nullptr && only->camera1 != only->camera2 ? only : nullptr;
 }
 
+namespace {
+
+std::string WhyNoRotation(const RefineSummary& summary) {
+  char text[256];
+  const double sigma_deg = RadToDeg(summary.rotation_sigma);
+  if (!summary.exceeds_chance) {
+    std::snprintf(text, sizeof(text),
+                  "%d matches agree: too few, or no more than chance allows, to determine a motion",
+                  summary.num_inliers);
+  } else if (summary.covariance && sigma_deg <= kRotationObservableDeg) {
+    // Of points on a line the linear theory states a sigma that means nothing.
+    return "the motion is not observable: " + summary.covariance_note;
+  } else if (summary.covariance && sigma_deg < 180) {
+    std::snprintf(text, sizeof(text), "the standard deviation of the rotation is %.1f deg",
+                  sigma_deg);
+  } else {
+    std::snprintf(text, sizeof(text), "the %d matches that agree do not determine the rotation",
+                  summary.num_inliers);
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string RefineSummary::ObservabilityReport() const {
   if (termination == Termination::kStopped) {
     return "it is not known what is observable: the refinement was not done (" + message + ")";
   }
   char text[256];
-  if (!rotation_observable && exceeds_chance) {
-    if (rotation_sigma >= 0 && RadToDeg(rotation_sigma) < 180) {
-      std::snprintf(text, sizeof(text), "the standard deviation of the rotation is %.1f deg",
-                    RadToDeg(rotation_sigma));
-    } else {
-      std::snprintf(text, sizeof(text), "the %d matches that agree do not determine the rotation",
-                    num_inliers);
-    }
+  if (other_motion.has_value() && !translation_observable) {
+    std::snprintf(text, sizeof(text), "another motion fits as well, which turns by %.1f deg",
+                  RadToDeg(LogSO3(other_motion->R).norm()));
     return text;
   }
-  if (!rotation_observable) {
-    std::snprintf(text, sizeof(text),
-                  "%d matches agree: too few, or no more than chance allows, to determine a motion",
-                  num_inliers);
-    return text;
-  }
+  if (!rotation_observable) return WhyNoRotation(*this);
   if (!translation_observable) {
     // Relative standard deviation of |t| from which on |t| counts as not determined at all.
     constexpr double kNothingKnown = 10.0;

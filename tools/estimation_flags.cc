@@ -179,10 +179,11 @@ bool ReadPriorFlags(PriorSourceOptions* prior, std::string* error) {
 bool CheckRefinement(const EstimateOptions& estimate, std::string* error) {
   if (!estimate.refine_motion &&
       (FLAGS_fix_translation_norm || FLAGS_use_prior_in_refine || FLAGS_typical_length != 1 ||
+       FLAGS_calibration_sigma_deg != 0 || FLAGS_calibration_sigma_m != 0 ||
        FLAGS_loss != "tukey" || FLAGS_residual != "sampson")) {
     return Refuse(
-        "--loss, --residual, --fix_translation_norm, --use_prior_in_refine and --typical_length "
-        "have no effect without a refinement (--refine=none)",
+        "--loss, --residual, --fix_translation_norm, --use_prior_in_refine, --typical_length and "
+        "--calibration_sigma_... have no effect without a refinement (--refine=none)",
         error);
   }
   if (estimate.refine.residual == ResidualKind::kAlgebraic && FLAGS_loss != "tukey") {

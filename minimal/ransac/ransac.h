@@ -12,6 +12,7 @@
 #define RIGEL_MINIMAL_RANSAC_RANSAC_H_
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -33,7 +34,7 @@ struct RansacResult {
   int num_inliers = 0;
   // Optimized finalists that are not similar to `best` and have nearly its score: other minima.
   static constexpr int kMaxOthers = 2;
-  Model others[kMaxOthers];
+  std::array<Model, kMaxOthers> others;
   int num_others = 0;
   // The best-scoring minimal hypothesis of the run, before any optimization.
   Model best_minimal;

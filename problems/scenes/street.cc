@@ -66,8 +66,7 @@ class StreetGeometry : public SceneGeometry {
     for (int draw = 0; draw < kMaxStreetDraws; ++draw) {
       match->camera1 = DrawCamera(random);
       const Eigen::Vector3d X = DrawPoint(random, match);
-      const Eigen::Vector3d X2 = truth_ * X;
-      const auto same = [&X2](int /*camera*/) { return X2; };
+      const auto same = [&](int /*camera*/) -> Eigen::Vector3d { return truth_ * X; };
       if (DrawSecond(inter, same, random, match)) return true;
     }
     *error = inter ? "no two cameras of the rig share enough of their views for matches between "

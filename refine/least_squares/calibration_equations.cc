@@ -5,25 +5,15 @@
 namespace rigel {
 namespace {
 
-// The errors of the two cameras of a group.
-constexpr int kPairErrors = 2 * kCameraErrors;
-using PairMatrix = Eigen::Matrix<double, kPairErrors, kPairErrors>;
+// The derivatives by the errors of the two cameras of a group.
+using PairDerivatives = Eigen::Matrix<double, 6, 2 * kCameraErrors>;
 
-// What rows of one camera pair add.
-struct PairSums {
-  Matrix6d motion = Matrix6d::Zero();
-  Eigen::Matrix<double, 6, kPairErrors> cross = Eigen::Matrix<double, 6, kPairErrors>::Zero();
-  PairMatrix own = PairMatrix::Zero();
-
-  void Add(const SampsonSums& sums, double factor, const ByMotionMatrix& M,
-           const ByCalibrationMatrix& E) {
-    const Eigen::Map<const Eigen::Matrix<double, 9, 9>> H(sums.H);
-    const ByCalibrationMatrix HE = factor * H * E;
-    motion += factor * M.transpose() * H * M;
-    cross += M.transpose() * HE;
-    own += E.transpose() * HE;
-  }
-};
+// Those that the sums of rows of one camera pair give.
+PairDerivatives DerivativesOf(const SampsonSums& sums, const ByMotionMatrix& M,
+                              const ByCalibrationMatrix& E) {
+  const Eigen::Map<const Eigen::Matrix<double, 9, 9>> H(sums.H);
+  return M.transpose() * H * E;
+}
 
 // A lens that is no pinhole and whose focal lengths have a stated error.
 bool HasLensError(const RigCamera& camera) {
@@ -53,14 +43,14 @@ void SetFocalColumns(const GroupedMatches& matches, int k, const RowMajor3d& F,
 
 }  // namespace
 
-void CalibrationEquations::Add(const SampsonKernelOptions& options, const GroupedMatches& matches,
+void AddCalibrationDerivatives(const SampsonKernelOptions& options, const GroupedMatches& matches,
                                const MatchGroup& group, const double* weights, const Pose& pose,
-                               double factor) {
+                               double factor, CalibrationDerivatives* sum) {
   const RowMajor3d F = matches.Fundamental(group, pose);
   const RowArrays rows = matches.Rows(group);
   const ByMotionMatrix M = FundamentalByMotion(matches, group, pose, false);
   ByCalibrationMatrix E = FundamentalByCalibration(matches, group, pose);
-  PairSums pair;
+  PairDerivatives of_group = PairDerivatives::Zero();
   if (HasLensError(matches.rig().cameras[group.camera1]) ||
       HasLensError(matches.rig().cameras[group.camera2])) {
     for (int i = 0; i < group.size; ++i) {
@@ -69,23 +59,18 @@ void CalibrationEquations::Add(const SampsonKernelOptions& options, const Groupe
       SumSampson(options, RowsFrom(rows, i, 1), weights + i, F.data(), Rounding2(F),
                  SampsonParts::kAll, &sums);
       SetFocalColumns(matches, group.begin + i, F, &E);
-      pair.Add(sums, factor, M, E);
+      of_group += DerivativesOf(sums, M, E);
     }
   } else {
     SampsonSums sums;
     SumSampson(options, rows, weights, F.data(), Rounding2(F), SampsonParts::kAll, &sums);
-    pair.Add(sums, factor, M, E);
+    of_group = DerivativesOf(sums, M, E);
   }
-  motion += pair.motion;
-  const int at[2] = {kCameraErrors * group.camera1, kCameraErrors * group.camera2};
-  for (int a = 0; a < 2; ++a) {
-    cross.middleCols<kCameraErrors>(at[a]) +=
-        pair.cross.middleCols<kCameraErrors>(kCameraErrors * a);
-    for (int c = 0; c < 2; ++c) {
-      own.block<kCameraErrors, kCameraErrors>(at[a], at[c]) +=
-          pair.own.block<kCameraErrors, kCameraErrors>(kCameraErrors * a, kCameraErrors * c);
-    }
-  }
+  of_group *= factor;
+  sum->middleCols<kCameraErrors>(kCameraErrors * group.camera1) +=
+      of_group.leftCols<kCameraErrors>();
+  sum->middleCols<kCameraErrors>(kCameraErrors * group.camera2) +=
+      of_group.rightCols<kCameraErrors>();
 }
 
 }  // namespace rigel

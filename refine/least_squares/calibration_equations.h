@@ -1,6 +1,6 @@
-// The normal equations of the motion and the errors of the calibration (fundamental_derivatives.h).
-// Of pinholes both change the Sampson errors through F alone. So the sums of SumSampson() serve
-// both. A stated error of the focal lengths of another lens changes them row by row.
+// How errors of the calibration (fundamental_derivatives.h) change the normal equations of the
+// motion. Of pinholes both change the Sampson errors through F alone. So the sums of SumSampson()
+// serve both. A stated error of the focal lengths of another lens changes them row by row.
 #ifndef RIGEL_REFINE_LEAST_SQUARES_CALIBRATION_EQUATIONS_H_
 #define RIGEL_REFINE_LEAST_SQUARES_CALIBRATION_EQUATIONS_H_
 
@@ -14,24 +14,14 @@
 
 namespace rigel {
 
-// Sums over matches of the second derivatives of the cost: by the motion and by the errors of the
-// cameras, camera by camera.
-struct CalibrationEquations {
-  explicit CalibrationEquations(int num_cameras)
-      : cross(6, kCameraErrors * num_cameras),
-        own(kCameraErrors * num_cameras, kCameraErrors * num_cameras) {
-    cross.setZero();
-    own.setZero();
-  }
+// The derivatives of the gradient of the cost, by the motion, by the errors of the cameras: sums
+// over matches, kCameraErrors columns for each camera.
+using CalibrationDerivatives = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-  // Adds SumSampson() of the group at `pose`, times `factor`.
-  void Add(const SampsonKernelOptions& options, const GroupedMatches& matches,
-           const MatchGroup& group, const double* weights, const Pose& pose, double factor);
-
-  Matrix6d motion = Matrix6d::Zero();
-  Eigen::Matrix<double, 6, Eigen::Dynamic> cross;
-  Eigen::MatrixXd own;
-};
+// Adds those of SumSampson() of the group at `pose`, times `factor`.
+void AddCalibrationDerivatives(const SampsonKernelOptions& options, const GroupedMatches& matches,
+                               const MatchGroup& group, const double* weights, const Pose& pose,
+                               double factor, CalibrationDerivatives* sum);
 
 }  // namespace rigel
 

@@ -35,7 +35,8 @@ Eigen::Matrix<double, 9, 12> ByPlaces(const Factors& f, const Eigen::Matrix3d& R
 
 RowMajor3d FundamentalOf(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
                          bool of_rays) {
-  const Factors f(matches.PlacesOf(group, pose, of_rays), pose);
+  if (!of_rays) return matches.Fundamental(group, pose);
+  const Factors f(matches.PlacesOf(group, pose, true), pose);
   return f.left.transpose() * Skew(f.b) * f.right;
 }
 
@@ -69,7 +70,7 @@ ByCalibrationMatrix FundamentalByCalibration(const GroupedMatches& matches, cons
   ByCalibrationMatrix D = ByCalibrationMatrix::Zero();
   D.leftCols<6>() = by_places.leftCols<6>();
   D.middleCols<6>(kCameraErrors) = by_places.rightCols<6>();
-  const RowMajor3d F = f.left.transpose() * Skew(f.b) * f.right;
+  const RowMajor3d F = matches.Fundamental(group, pose);
   const auto is_pinhole = [&matches](int camera) {
     return matches.rig().cameras[camera].intrinsics.IsPinhole();
   };

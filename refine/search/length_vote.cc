@@ -25,7 +25,7 @@ std::vector<double> Votes(const GroupedMatches& matches, const Pose& pose, doubl
     const GroupedMatches::Places at = matches.PlacesOf(group, pose, true);
     const Eigen::Vector3d arm = pose.R * at.s1 - at.s2;
     // Radians: the noise of both pixels.
-    const double noise = 0.5 * std::sqrt(2.0) * matches.DecidedParallax(group, noise_px);
+    const double noise = std::sqrt(2.0) * noise_px * matches.RadiansPerPixel(group);
     for (int k = group.begin; k < group.begin + group.size; ++k) {
       const RayPair rays = matches.rays(k);
       const Eigen::Vector3d normal = (pose.R * rays.ray1.x).cross(rays.ray2.x);

@@ -9,6 +9,7 @@
 
 #include "rigel/core/cheirality.h"
 #include "rigel/core/epipolar.h"
+#include "rigel/refine/search/noise_model.h"
 
 namespace rigel {
 namespace {
@@ -22,7 +23,6 @@ struct PlaneRow {
 
 std::vector<PlaneRow> RowsOf(const GroupedMatches& matches, const Pose& pose, double noise_px,
                              Eigen::Vector3d* rays_sum) {
-  constexpr double kThresholdSigmas = 3.0;
   constexpr double kAcross = 0.1;  // of |b|: nearer to the epipole depths are far from normal
   std::vector<PlaneRow> rows;
   std::vector<double> errors;
@@ -30,7 +30,7 @@ std::vector<PlaneRow> RowsOf(const GroupedMatches& matches, const Pose& pose, do
   matches.SelectInliers(pose, kThresholdSigmas * noise_px, &errors, &inliers);
   rays_sum->setZero();
   for (const MatchGroup& group : matches.groups()) {
-    const double noise = 0.5 * std::sqrt(2.0) * matches.DecidedParallax(group, noise_px);
+    const double noise = std::sqrt(2.0) * noise_px * matches.RadiansPerPixel(group);
     for (int k = group.begin; k < group.begin + group.size; ++k) {
       if (!inliers[k]) continue;
       const RayPair rays = matches.rays(k);

@@ -1,8 +1,9 @@
 // The second motion of a plane.
 //
-// One camera sees points of a plane n'X = 1 move by the homography H = R + b n', and H = R_2 + b_2
-// n_2' for a second motion, plane and baseline (Longuet-Higgins 1986; Ma, Soatto, Kosecka, Sastry,
-// An Invitation to 3-D Vision, theorem 5.19). All its matches fit both.
+// One camera sees points of a plane n'X = 1 move by the homography H = R + b n'. There is a second
+// motion and plane with H = R_2 + b_2 n_2', and all matches of the plane fit both. See
+// Longuet-Higgins, The reconstruction of a plane surface from two perspective projections, 1986.
+// The decomposition is that of Ma, Soatto, Kosecka and Sastry, An Invitation to 3-D Vision, 5.3.
 #ifndef RIGEL_REFINE_SEARCH_PLANE_TWIN_H_
 #define RIGEL_REFINE_SEARCH_PLANE_TWIN_H_
 

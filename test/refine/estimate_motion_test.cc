@@ -370,6 +370,22 @@ TEST(EstimateMotion, SigmasOfPixelsAreWeights) {
   EXPECT_NEAR(ratio, 1.0, 0.12);
 }
 
+// Two-view bundle adjustment projects points with the cameras as they are mounted.
+TEST(EstimateMotion, BundleRefusesCamerasThatFireAtOtherTimes) {
+  FramePair pair = ScenePair(SceneOptions(), 0);
+  pair.time1 = 0.0;
+  pair.time2 = 0.1;
+  EstimateOptions options;
+  options.refine.form = RefineForm::kBundle;
+  EXPECT_EQ(EstimateMotion(options, pair).status, EstimateStatus::kSuccess);
+  pair.rig.cameras[1].time_offset = 0.01;
+  const MotionEstimate e = EstimateMotion(options, pair);
+  EXPECT_EQ(e.status, EstimateStatus::kNotRefined);
+  EXPECT_THAT(e.message, HasSubstr("fire at other times"));
+  pair.time2.reset();
+  EXPECT_EQ(EstimateMotion(EstimateOptions(), pair).status, EstimateStatus::kInvalidInput);
+}
+
 TEST(EstimateMotion, ConcurrentCallsGiveTheSameBits) {
   SceneOptions scene;
   scene.inter_share = 0.3;

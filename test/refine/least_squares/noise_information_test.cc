@@ -29,15 +29,29 @@ RowPoint RandomPoint(Random* random) {
   return point;
 }
 
+// Matches of a rig of different cameras at a motion that they do not fit.
+struct Problem {
+  explicit Problem(Random* random)
+      : rig(MixedRig(random)), matches(rig, UnrelatedMatches(rig, 27, random)) {
+    pose.R = ExpSO3(RandomVector3(0.0, 0.3, random));
+    pose.t = RandomVector3(0.0, 1.0, random);
+    const MotionBasis basis = FullBasis(pose, true);
+    LinearizeGroups(matches, ResidualKind::kSampson, pose, &basis, &groups);
+  }
+  Rig rig;
+  GroupedMatches matches;
+  Pose pose;
+  std::vector<GroupLinearization> groups;
+};
+
 TEST(NoiseInformation, MatchesNumericDifferentiation) {
   for (int index = 0; index < 20; ++index) {
     Random random = Random::Stream(3, index);
-    const Rig rig = MixedRig(&random);
-    const GroupedMatches matches(rig, UnrelatedMatches(rig, 27, &random));
-    const Pose pose = {ExpSO3(RandomVector3(0.0, 0.3, &random)), RandomVector3(0.0, 1.0, &random)};
-    const MotionBasis basis = FullBasis(pose, true);
-    std::vector<GroupLinearization> groups;
-    LinearizeGroups(matches, ResidualKind::kSampson, pose, &basis, &groups);
+    const Problem problem(&random);
+    const Rig& rig = problem.rig;
+    const GroupedMatches& matches = problem.matches;
+    const Pose& pose = problem.pose;
+    const std::vector<GroupLinearization>& groups = problem.groups;
     std::vector<double> weights(matches.size());
     for (double& w : weights) w = random.Uniform() < 0.2 ? 0.0 : random.Uniform(0.1, 2.0);
     Matrix6d expected = Matrix6d::Zero();
@@ -69,12 +83,10 @@ TEST(NoiseInformation, MatchesNumericDifferentiation) {
 TEST(NoiseInformation, MatchesNumericDifferentiationForAnyCamera) {
   for (int index = 0; index < 50; ++index) {
     Random random = Random::Stream(4, index);
-    const Rig rig = MixedRig(&random);
-    const GroupedMatches matches(rig, UnrelatedMatches(rig, 27, &random));
-    const Pose pose = {ExpSO3(RandomVector3(0.0, 0.3, &random)), RandomVector3(0.0, 1.0, &random)};
-    const MotionBasis basis = FullBasis(pose, true);
-    std::vector<GroupLinearization> groups;
-    LinearizeGroups(matches, ResidualKind::kSampson, pose, &basis, &groups);
+    const Problem problem(&random);
+    const GroupedMatches& matches = problem.matches;
+    const Pose& pose = problem.pose;
+    const std::vector<GroupLinearization>& groups = problem.groups;
     const size_t g = index % groups.size();
     const RowPoint points[2] = {RandomPoint(&random), RandomPoint(&random)};
     // The error at a motion near `pose`, with pixel coordinate c moved by h.

@@ -5,10 +5,12 @@
 #include <cstdio>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "rigel/core/epipolar.h"
 #include "rigel/refine/estimate_motion.h"
+#include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/test/core/pinhole.h"
 #include "rigel/test/refine/refine_scene.h"
 
@@ -92,6 +94,9 @@ TEST(PlaneTwin, AnEstimateTellsTheOtherMotion) {
     wrong += e.refine.rotation_observable && angle > 1.0;
     if (!e.refine.other_motion.has_value()) continue;
     EXPECT_FALSE(e.refine.translation_observable && e.refine.rotation_observable);
+    if (!e.refine.translation_observable) {
+      EXPECT_THAT(e.refine.ObservabilityReport(), testing::HasSubstr("another motion fits"));
+    }
     told += std::min(angle, RotationErrorDeg(*pair.truth, *e.refine.other_motion)) < 1.0;
   }
   std::printf("[ measured ] of %d: rotation claimed %d, wrong %d; one of two motions right %d\n",
@@ -142,6 +147,10 @@ TEST(Observability, PointsOnALineOrInOnePlaceDetermineNothing) {
     EXPECT_FALSE(e.refine.rotation_observable) << index;
     EXPECT_FALSE(e.refine.RigDirectionKnown()) << index;
     EXPECT_FALSE(e.refine.covariance_valid) << index;
+    const double sigma_deg = RadToDeg(e.refine.rotation_sigma);
+    if (!e.refine.other_motion && sigma_deg <= kRotationObservableDeg) {
+      EXPECT_THAT(e.refine.ObservabilityReport(), testing::HasSubstr("on a line or in one place"));
+    }
   }
 }
 
