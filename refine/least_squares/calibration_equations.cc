@@ -36,7 +36,7 @@ void SetFocalColumns(const GroupedMatches& matches, int k, const RowMajor3d& F,
   if (HasLensError(camera2)) {
     const Eigen::Vector3d p = matches.Point2(k).p;
     const RowMajor3d change = p * FocalShift(camera2, match.pixel2).transpose() * F;
-    E->col(kPairErrors - 1) =
+    E->col(2 * kCameraErrors - 1) =
         Eigen::Map<const Eigen::Matrix<double, 9, 1>>(change.data()) / p.squaredNorm();
   }
 }
