@@ -96,14 +96,12 @@ bool ReadOdometryFile(const std::string& path, OdometrySeries* series, std::stri
       std::any_of(table.columns().begin(), table.columns().end(),
                   [&](const SensorTable::Column& column) { return is_speed(column.name); });
   size_t column;
-  const bool found = read.is_speed
-                         ? table.Find([&](std::string_view name) {
-                             return is_speed(name) || is_distance(name);
-                           }, "the speed", {"m/s", "m s^-1"}, &column, error)
-                         : table.Find(is_distance, "speed (m/s) or distance (m)", {"m"}, &column,
-                                      error);
-  if (!found ||
-      !table.Convert({column}, &read.readings.times, &read.readings.values, error)) {
+  const bool found =
+      read.is_speed
+          ? table.Find([&](std::string_view name) { return is_speed(name) || is_distance(name); },
+                       "the speed", {"m/s", "m s^-1"}, &column, error)
+          : table.Find(is_distance, "speed (m/s) or distance (m)", {"m"}, &column, error);
+  if (!found || !table.Convert({column}, &read.readings.times, &read.readings.values, error)) {
     return false;
   }
   *series = std::move(read);

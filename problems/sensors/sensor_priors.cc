@@ -95,9 +95,7 @@ double Sensors::OdometryExcess() const {
   return odometry_ ? Excess(odometry_noise_, options_.odometry_sigma) : 1.0;
 }
 
-double Sensors::GyroExcess() const {
-  return gyro_ ? Excess(gyro_noise_, GyroReadingSigma()) : 1.0;
-}
+double Sensors::GyroExcess() const { return gyro_ ? Excess(gyro_noise_, GyroReadingSigma()) : 1.0; }
 
 // The sensors between two times.
 class PairSensors {
@@ -144,21 +142,20 @@ class PairSensors {
   void AddGyro() {
     const RateSeries& series = *sensors_.gyro_;
     SeriesPlace first, last;
-    priors_.gyro =
-        FindSpan(series.times, Begin(), End(), options_.max_gap_s, &first, &last);
+    priors_.gyro = FindSpan(series.times, Begin(), End(), options_.max_gap_s, &first, &last);
     if (priors_.gyro != Coverage::kCovered || Begin() == End()) return;
     Eigen::Matrix3d begin_from_end = Eigen::Matrix3d::Identity();  // of the IMU
     ForEachPart(series.times, first, last, [&](size_t k, double u, double v, double seconds) {
       const Eigen::Vector3d step = series.values[k + 1] - series.values[k];
-      const Eigen::Vector3d rate1 = series.values[k] + u * step, rate2 = series.values[k] + v * step;
+      const Eigen::Vector3d rate1 = series.values[k] + u * step,
+                            rate2 = series.values[k] + v * step;
       // The second term is that of an axis that turns meanwhile (coning).
-      begin_from_end *= ExpSO3(seconds / 2 * (rate1 + rate2) +
-                               seconds * seconds / 12 * rate1.cross(rate2));
+      begin_from_end *=
+          ExpSO3(seconds / 2 * (rate1 + rate2) + seconds * seconds / 12 * rate1.cross(rate2));
     });
     const Eigen::Matrix3d imu2_from_imu1 =
         time2_ > time1_ ? Eigen::Matrix3d(begin_from_end.transpose()) : begin_from_end;
-    priors_.rotation =
-        options_.imu_from_body.transpose() * imu2_from_imu1 * options_.imu_from_body;
+    priors_.rotation = options_.imu_from_body.transpose() * imu2_from_imu1 * options_.imu_from_body;
 
     const double sigma = sensors_.GyroReadingSigma();
     const double seconds = End() - Begin(), bias = options_.gyro_bias * seconds;
@@ -183,8 +180,7 @@ class PairSensors {
     const SeriesNoise& noise = sensors_.odometry_noise_;
     const double sigma = options_.odometry_sigma;
     SeriesPlace first, last;
-    priors_.odometry =
-        FindSpan(series.times, Begin(), End(), options_.max_gap_s, &first, &last);
+    priors_.odometry = FindSpan(series.times, Begin(), End(), options_.max_gap_s, &first, &last);
     if (priors_.odometry != Coverage::kCovered) return;
     const double seconds = End() - Begin();
     priors_.too_long = seconds > kMaxPathSeconds;
@@ -192,7 +188,8 @@ class PairSensors {
     double path = 0, variance = 0;
     if (sensors_.odometry_->is_speed) {
       const std::vector<double> weights = IntegralWeights(series.times, first, last);
-      for (size_t k = 0; k < weights.size(); ++k) path += weights[k] * series.values[first.index + k];
+      for (size_t k = 0; k < weights.size(); ++k)
+        path += weights[k] * series.values[first.index + k];
       const double off_line = kMeanOffLine * seconds;
       variance = sigma * sigma * SquareSum(weights) + off_line * off_line * noise.Curve(sigma);
     } else {
@@ -219,8 +216,7 @@ SensorPriors PriorsBetween(const Sensors& sensors, double time1, double time2) {
   return PairSensors(sensors, time1, time2).Priors();
 }
 
-std::map<std::string, std::string> SensorLines(const Sensors& sensors,
-                                               const SensorPriors& priors) {
+std::map<std::string, std::string> SensorLines(const Sensors& sensors, const SensorPriors& priors) {
   std::map<std::string, std::string> lines;
   const MotionPrior& prior = priors.prior;
   if (sensors.attitude()) {
@@ -241,9 +237,8 @@ std::map<std::string, std::string> SensorLines(const Sensors& sensors,
     });
   }
   if (sensors.odometry()) {
-    AddLine(&lines, "distance", prior.distance.has_value(), [&](MatchText& text) {
-      text.Number(*prior.distance).Number(prior.distance_sigma);
-    });
+    AddLine(&lines, "distance", prior.distance.has_value(),
+            [&](MatchText& text) { text.Number(*prior.distance).Number(prior.distance_sigma); });
   }
   return lines;
 }

@@ -105,9 +105,9 @@ bool SensorTable::Find(const std::function<bool(std::string_view name)>& is_name
   if (*column == 0) return Fail("no column is named " + what, error);
   const std::string& unit = columns_[*column].unit;
   if (unit.empty() || std::find(units.begin(), units.end(), unit) != units.end()) return true;
-  return Fail("the unit of " + what + " is " + Quoted(unit) + ", expected " +
-                  std::string(units.front()),
-              error);
+  return Fail(
+      "the unit of " + what + " is " + Quoted(unit) + ", expected " + std::string(units.front()),
+      error);
 }
 
 // 0: whole nanoseconds.

@@ -13,7 +13,8 @@ namespace {
 constexpr double kVarianceOffLine = 1.5;
 constexpr double kVarianceOfChange = 5.0;
 
-// residual(k, share): reading k less the value at this share of the way from reading k - 1 to k + 1.
+// residual(k, share): reading k less the value at this share of the way from reading k - 1 to k
+// + 1.
 template <class Residual>
 SeriesNoise Measure(const std::vector<double>& times, double max_gap, int num_axes,
                     const Residual& residual) {
@@ -43,9 +44,7 @@ SeriesNoise Measure(const std::vector<double>& times, double max_gap, int num_ax
 
 }  // namespace
 
-double SeriesNoise::Independent(double sigma) const {
-  return std::min(independent, sigma * sigma);
-}
+double SeriesNoise::Independent(double sigma) const { return std::min(independent, sigma * sigma); }
 
 double SeriesNoise::Curve(double sigma) const {
   return std::max(0.0, off_line - kVarianceOffLine * Independent(sigma));
