@@ -45,7 +45,7 @@ DEFINE_double(sensor_max_gap_s, 0.2,
 namespace rigel {
 namespace {
 
-// Flags, with the one that they have no effect without.
+// The flags that name a sensor's file, each with those that have no effect without it.
 const std::vector<std::pair<std::string, std::vector<std::string>>>& FlagsOfSensors() {
   static const auto& flags = *new std::vector<std::pair<std::string, std::vector<std::string>>>{
       {"attitude", {"attitude_sigma_deg", "attitude_time_offset_s", "world_down"}},
@@ -67,7 +67,6 @@ bool OptionsFromFlags(SensorOptions* options, std::string* error) {
   return true;
 }
 
-// Checks a flag's number; `least` is allowed if it is not 0 or `may_be_least`.
 bool CheckNumber(const std::string& flag, double value, bool may_be_zero, std::string* error) {
   if (std::isfinite(value) && (value > 0 || (may_be_zero && value == 0))) return true;
   return WrongValue(flag, CsvNumber(value), may_be_zero ? "a number >= 0" : "a number > 0", error);

