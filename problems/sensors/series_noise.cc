@@ -8,8 +8,8 @@
 namespace rigel {
 namespace {
 
-// With independent errors of variance 1, e_k = n_k - (n_{k-1} + n_{k+1}) / 2 has this variance, and
-// e_k - e_{k-1}, which a smooth curve hardly enters, the other one.
+// Both are variances with independent errors n_k of variance 1: of the difference from the line,
+// e_k = n_k - (n_{k-1} + n_{k+1}) / 2, and of e_k - e_{k-1}, which a smooth curve hardly enters.
 constexpr double kVarianceOffLine = 1.5;
 constexpr double kVarianceOfChange = 5.0;
 

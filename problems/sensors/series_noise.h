@@ -1,8 +1,8 @@
 // How much the readings of a series scatter about the straight line between their neighbours.
 //
-// The error of an interpolated value depends on two things that nobody states: whether the errors
-// of neighbouring readings are independent, as those of a wheel's pulses, or the same, as those of
-// a filter's attitude; and how far the true curve leaves the line. Both are in the readings.
+// The error of an interpolated value depends on two things that nobody states, and that the
+// readings show. Errors of neighbouring readings may be independent, as those of a wheel's pulses,
+// or the same, as those of a filter's attitude. And the true curve leaves the line.
 #ifndef RIGEL_PROBLEMS_SENSORS_SERIES_NOISE_H_
 #define RIGEL_PROBLEMS_SENSORS_SERIES_NOISE_H_
 
