@@ -86,18 +86,12 @@ void ReportExcess(double excess, const std::string& flag, const std::string& val
             << flag << "=" << value << " says; the lines state that\n";
 }
 
-std::string Files(int count) { return std::to_string(count) + (count == 1 ? " pair" : " pairs"); }
+std::string Pairs(int count) { return std::to_string(count) + (count == 1 ? " pair" : " pairs"); }
 
 }  // namespace
 
-bool HasSensors() { return !SensorFiles().empty(); }
-
-std::vector<std::string> SensorFiles() {
-  std::vector<std::string> files;
-  for (const std::string& file : {FLAGS_attitude, FLAGS_odometry, FLAGS_gyro}) {
-    if (!file.empty()) files.push_back(file);
-  }
-  return files;
+bool HasSensors() {
+  return !FLAGS_attitude.empty() || !FLAGS_odometry.empty() || !FLAGS_gyro.empty();
 }
 
 bool CheckSensorFlags(std::string* error) {
@@ -208,7 +202,7 @@ std::map<std::string, std::string> SensorSource::Lines(const FramePair& pair) {
 void SensorSource::ReportSensor(const std::string& flag, const std::string& lines,
                                 const Counts& counts, const std::vector<double>& times) const {
   std::cerr << "--" << flag << ": " << lines << " in " << counts.covered << " of "
-            << Files(num_pairs_);
+            << Pairs(num_pairs_);
   if (counts.gap > 0) {
     std::cerr << "; " << counts.gap << " in a gap of more than "
               << CsvNumber(FLAGS_sensor_max_gap_s) << " s";
@@ -226,7 +220,7 @@ void SensorSource::ReportSensor(const std::string& flag, const std::string& line
 void SensorSource::Report() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (without_times_ > 0) {
-    std::cerr << Files(without_times_) << " without a line time: no lines from sensors\n";
+    std::cerr << Pairs(without_times_) << " without a line time: no lines from sensors\n";
   }
   if (num_pairs_ == 0) return;
   if (sensors_.attitude()) {
@@ -239,11 +233,11 @@ void SensorSource::Report() const {
   }
   const int turns = (sensors_.gyro() ? gyro_ : attitude_).covered;
   if ((sensors_.gyro() || sensors_.attitude()) && turns > with_axis_) {
-    std::cerr << "axis in " << with_axis_ << " of " << Files(turns)
+    std::cerr << "axis in " << with_axis_ << " of " << Pairs(turns)
               << ": the others turn too little to have one\n";
   }
   if (gravity_off_ > 0) {
-    std::cerr << "in " << Files(gravity_off_)
+    std::cerr << "in " << Pairs(gravity_off_)
               << " gravity is more than 45 degrees off the cameras' down: expected attitudes "
                  "world_from_imu, w x y z; see --imu_from_body, --world_down\n";
   }

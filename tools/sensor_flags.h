@@ -2,7 +2,6 @@
 #ifndef RIGEL_TOOLS_SENSOR_FLAGS_H_
 #define RIGEL_TOOLS_SENSOR_FLAGS_H_
 
-#include <array>
 #include <map>
 #include <mutex>
 #include <string>
@@ -15,9 +14,6 @@ namespace rigel {
 
 // Whether a flag names the file of a sensor.
 bool HasSensors();
-
-// The files that they name.
-std::vector<std::string> SensorFiles();
 
 // Checks the flags without reading a file. False with a message if one is wrong.
 bool CheckSensorFlags(std::string* error);
