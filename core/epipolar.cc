@@ -53,17 +53,6 @@ Eigen::Matrix3d EssentialMatrixFromDepths(const Eigen::Matrix3d& R, const RayPai
   return camera_j.Q.transpose() * E * camera_i.Q;
 }
 
-Eigen::Matrix3d CentredFundamental(const Eigen::Matrix3d& E, const PinholeCamera& camera_i,
-                                   const PinholeCamera& camera_j) {
-  const Eigen::Vector3d inv_i(1.0 / camera_i.fx, 1.0 / camera_i.fy, 1.0);
-  const Eigen::Vector3d inv_j(1.0 / camera_j.fx, 1.0 / camera_j.fy, 1.0);
-  return inv_j.asDiagonal() * E * inv_i.asDiagonal();
-}
-
-Eigen::Vector3d CentredPixel(const PinholeCamera& camera, const Pixel& pixel) {
-  return {pixel.x() - camera.cx, pixel.y() - camera.cy, 1.0};
-}
-
 double SampsonError(const Eigen::Matrix3d& F, const Eigen::Vector3d& p_i,
                     const Eigen::Vector3d& p_j) {
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = F;

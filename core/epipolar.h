@@ -49,16 +49,9 @@ Eigen::Matrix3d EssentialMatrixFromDepths(const Eigen::Matrix3d& R, const RayPai
                                           double l1, double l2, const RigCamera& camera_i,
                                           const RigCamera& camera_j);
 
-// F such that p_j' F p_i = u_j' E u_i for p = (pixel - principal point, 1) of each camera. With
-// centred pixels the usual Sampson formula gives pixels for any mixture of focal lengths,
-// fx != fy included.
-Eigen::Matrix3d CentredFundamental(const Eigen::Matrix3d& E, const PinholeCamera& camera_i,
-                                   const PinholeCamera& camera_j);
-
-// p = (pixel - principal point, 1).
-Eigen::Vector3d CentredPixel(const PinholeCamera& camera, const Pixel& pixel);
-
-// Signed Sampson error in pixels, r = C / |dC/d(pixel_i, pixel_j)|, for a CentredFundamental F.
+// Signed Sampson error in pixels, r = C / |dC/d(pixel_i, pixel_j)|, for pinholes: p is that of
+// row_point.h, F = U_j' E U_i. With centred pixels the usual Sampson formula gives pixels for any
+// mixture of focal lengths, fx != fy included.
 // It is the distance of the match from the nearest exact match to first order, it does not
 // change when F is scaled (so it cannot gain by shrinking the motion), and:
 //   at the epipoles (the gradient is zero but F is not) it is 0, its limit;
@@ -70,7 +63,8 @@ double SampsonError(const Eigen::Matrix3d& F, const Eigen::Vector3d& p_i,
 // The same for any cameras: F = U_j' E U_i (row_point.h), r = C / |(J_i'F'p_j, J_j'F p_i)|.
 double SampsonError(const Eigen::Matrix3d& F, const RowPoint& i, const RowPoint& j);
 
-// Sampson error of one match under `pose`, pixels. The match's cameras must be in the rig.
+// Sampson error of one match under `pose`, pixels. The match's cameras must be in the rig. Infinite
+// if a pixel has no ray.
 double SampsonError(const Pose& pose, const Rig& rig, const Match& match);
 
 }  // namespace rigel

@@ -1,6 +1,8 @@
 #include "rigel/core/grouped_matches.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 
@@ -33,6 +35,36 @@ std::vector<int> GroupedOrder(int num_cameras, const std::vector<Match>& matches
   return order;
 }
 
+// Both sides of a match.
+using PointPair = std::array<RowPoint, 2>;
+
+// Those of the matches of `order`. Takes the matches out of it that have a pixel without a ray.
+std::vector<PointPair> PointsOf(const Rig& rig, const std::vector<Match>& matches,
+                                std::vector<int>* order) {
+  std::vector<PointPair> points;
+  points.reserve(order->size());
+  size_t kept = 0;
+  for (const int k : *order) {
+    const Match& m = matches[k];
+    points.push_back({RowPointOf(rig.cameras[m.camera1], m.pixel1),
+                      RowPointOf(rig.cameras[m.camera2], m.pixel2)});
+    const bool has_rays =
+        !std::isnan(points.back()[0].p.z()) && !std::isnan(points.back()[1].p.z());
+    if (has_rays) {
+      (*order)[kept++] = k;
+    } else {
+      points.pop_back();
+    }
+  }
+  order->resize(kept);
+  return points;
+}
+
+// In the body frame.
+Eigen::Vector3d DirectionOf(const RigCamera& camera, const Pixel& pixel, const RowPoint& point) {
+  return camera.intrinsics.IsPinhole() ? MakeRay(camera, pixel).x : camera.Q * point.p;
+}
+
 double MedianSigma(const MatchColumns& columns) {
   std::vector<double> all = columns.sigma1;
   all.insert(all.end(), columns.sigma2.begin(), columns.sigma2.end());
@@ -43,10 +75,16 @@ double MedianSigma(const MatchColumns& columns) {
 
 GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches,
                                const MatchColumns& columns, double interval)
-    : rig_(rig), original_(GroupedOrder(rig.size(), matches)) {
+    : rig_(rig),
+      original_(GroupedOrder(rig.size(), matches)),
+      num_given_(static_cast<int>(matches.size())) {
   const std::vector<double>* sigmas[2] = {&columns.sigma1, &columns.sigma2};
-  general_ = !sigmas[0]->empty() || !sigmas[1]->empty();
-  const double typical = general_ ? MedianSigma(columns) : 1.0;
+  const bool has_sigmas = !sigmas[0]->empty() || !sigmas[1]->empty();
+  const double typical = has_sigmas ? MedianSigma(columns) : 1.0;
+  general_ = has_sigmas ||
+             std::any_of(rig.cameras.begin(), rig.cameras.end(),
+                         [](const RigCamera& camera) { return !camera.intrinsics.IsPinhole(); });
+  const std::vector<PointPair> points = PointsOf(rig, matches, &original_);
 
   for (const RigCamera& camera : rig.cameras) {
     unproject_.emplace_back(camera.Q * Unprojection(camera));
@@ -55,7 +93,7 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
     for (const RigCamera& camera : rig.cameras) later_.push_back(camera.time_offset / interval);
     if (std::all_of(later_.begin(), later_.end(), [](double a) { return a == 0; })) later_.clear();
   }
-  const size_t n = matches.size();
+  const size_t n = points.size();
   matches_.reserve(n);
   rows_.resize((general_ ? 4 + kGeneralArrays : 4) * n + kKernelPadding);
   directions_.resize(6 * n + kKernelPadding);
@@ -68,16 +106,13 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
     ++groups_.back().size;
     matches_.push_back(m);
     if (!columns.landmark.empty()) landmarks_.push_back(columns.landmark[original_[k]]);
-    const RowPoint points[2] = {RowPointOf(rig.cameras[m.camera1], m.pixel1),
-                                RowPointOf(rig.cameras[m.camera2], m.pixel2)};
     for (int side = 0; side < 2; ++side) {
+      const RowPoint& point = points[k][side];
+      const Eigen::Vector3d x = side == 0 ? DirectionOf(rig.cameras[m.camera1], m.pixel1, point)
+                                          : DirectionOf(rig.cameras[m.camera2], m.pixel2, point);
+      for (int i = 0; i < 3; ++i) directions_[(3 * side + i) * n + k] = x[i];
       const double factor = sigmas[side]->empty() ? 1.0 : (*sigmas[side])[original_[k]] / typical;
-      SetPoint(k, side, points[side], factor, n);
-    }
-    const RayPair rays = MakeRayPair(rig, m);
-    for (int i = 0; i < 3; ++i) {
-      directions_[i * n + k] = rays.ray1.x[i];
-      directions_[(3 + i) * n + k] = rays.ray2.x[i];
+      SetPoint(k, side, point, factor, n);
     }
   }
 }
@@ -138,6 +173,7 @@ GroupedMatches GroupedMatches::Subset(const std::vector<size_t>& taken) const {
   subset.rig_ = rig_;
   subset.unproject_ = unproject_;
   subset.later_ = later_;
+  subset.num_given_ = static_cast<int>(count);
   subset.original_.resize(count);
   std::iota(subset.original_.begin(), subset.original_.end(), 0);
   subset.matches_.reserve(count);
@@ -266,9 +302,9 @@ double GroupedMatches::Score(const Pose& pose, double threshold_px, double bound
 }
 
 double GroupedMatches::RadiansPerPixel(const MatchGroup& group) const {
-  const PinholeCamera& c1 = rig_.cameras[group.camera1].intrinsics;
-  const PinholeCamera& c2 = rig_.cameras[group.camera2].intrinsics;
-  return 1.0 / std::min({c1.fx, c1.fy, c2.fx, c2.fy});
+  const Pixel scale1 = rig_.cameras[group.camera1].intrinsics.PixelsPerRadian();
+  const Pixel scale2 = rig_.cameras[group.camera2].intrinsics.PixelsPerRadian();
+  return 1.0 / std::min(scale1.minCoeff(), scale2.minCoeff());
 }
 
 double GroupedMatches::DecidedParallax(const MatchGroup& group, double threshold_px) const {

@@ -30,7 +30,8 @@ struct MatchGroup {
 class GroupedMatches {
  public:
   GroupedMatches() = default;
-  // `matches` must name cameras of `rig` only and have finite pixels. Copies what it needs.
+  // `matches` must name cameras of `rig` only and have finite pixels. Copies what it needs. A match
+  // is left out if one of its pixels has no ray (camera.h): it is no match under any motion.
   // Of `columns`, sigma1, sigma2 and landmark are used: with sigmas all errors are those that a
   // pixel of the median sigma would have.
   // `interval` is the time between the views, seconds; 0 if it is not known, and the time offsets
@@ -43,6 +44,7 @@ class GroupedMatches {
 
   const Rig& rig() const { return rig_; }
   int size() const { return static_cast<int>(matches_.size()); }
+  int num_given() const { return num_given_; }  // with those that were left out
   const std::vector<MatchGroup>& groups() const { return groups_; }
 
   // In grouped order; within a group in the order of the input.
@@ -133,6 +135,7 @@ class GroupedMatches {
   std::vector<Match> matches_;
   std::vector<int64_t> landmarks_;
   std::vector<int> original_;
+  int num_given_ = 0;
   std::vector<Eigen::Matrix3d> unproject_;  // Q U of each camera
   std::vector<double> later_;               // a of each camera; empty if all are zero
   // x1 of all, then y1, x2, y2, and what RowArrays::general says, if that is needed; the six

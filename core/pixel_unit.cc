@@ -10,7 +10,7 @@ double PixelUnit(const Rig& rig) {
   constexpr double kFocal = 450.0;
   double shortest = kFocal;
   for (const RigCamera& camera : rig.cameras) {
-    shortest = std::min({shortest, camera.intrinsics.fx, camera.intrinsics.fy});
+    shortest = std::min(shortest, camera.intrinsics.PixelsPerRadian().minCoeff());
   }
   return shortest / kFocal;
 }

@@ -3,7 +3,7 @@
 namespace rigel {
 
 Ray MakeRay(const RigCamera& camera, const Pixel& pixel) {
-  return {(camera.Q * camera.intrinsics.Normalize(pixel)).normalized(), camera.s};
+  return {(camera.Q * AlongRay(camera.intrinsics, pixel)).normalized(), camera.s};
 }
 
 RayPair MakeRayPair(const Rig& rig, const Match& match) {

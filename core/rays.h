@@ -31,6 +31,7 @@ struct RayPair {
 };
 static_assert(kSameLayoutEverywhere<RayPair>, "no member of Ray may be aligned");
 
+// x is NaN if no ray of the camera has this pixel.
 Ray MakeRay(const RigCamera& camera, const Pixel& pixel);
 
 // The match's cameras must be in the rig.

@@ -9,14 +9,14 @@ namespace rigel {
 bool Rig::IsValid(std::string* error) const {
   for (size_t k = 0; k < cameras.size(); ++k) {
     const RigCamera& camera = cameras[k];
-    const PinholeCamera& c = camera.intrinsics;
     const std::string name = "camera " + std::to_string(k);
-    if (!(c.fx > 0 && c.fy > 0) || !std::isfinite(c.fx) || !std::isfinite(c.fy)) {
-      *error = name + ": focal lengths must be positive and finite";
+    std::string what;
+    if (!camera.intrinsics.IsValid(&what)) {
+      *error = name + ": " + what;
       return false;
     }
-    if (!std::isfinite(c.cx) || !std::isfinite(c.cy) || !camera.s.allFinite()) {
-      *error = name + ": principal point and position must be finite";
+    if (!camera.s.allFinite()) {
+      *error = name + ": the position must be finite";
       return false;
     }
     if (!IsRotation(camera.Q)) {

@@ -14,7 +14,7 @@ namespace rigel {
 
 // body_from_camera: X_body = Q X_cam + s (metres), the same at both times.
 struct RigCamera {
-  PinholeCamera intrinsics;
+  Camera intrinsics;  // raw pixels of any lens, or undistorted ones of a pinhole
   Eigen::Matrix3d Q = Eigen::Matrix3d::Identity();
   Eigen::Vector3d s = Eigen::Vector3d::Zero();
   // The stated error of the calibration, 1 sigma. 0: nothing is stated.
@@ -32,8 +32,8 @@ struct Rig {
 
   int size() const { return static_cast<int>(cameras.size()); }
 
-  // False with a message if a number is not finite, a focal length is not positive, a sigma is
-  // negative or a Q is not a rotation.
+  // False with a message if a number is not finite, the intrinsics are not valid (camera.h), a
+  // sigma is negative or a Q is not a rotation.
   bool IsValid(std::string* error) const;
 };
 

@@ -8,6 +8,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "rigel/core/row_point.h"
+
 namespace rigel {
 namespace {
 
@@ -74,14 +76,12 @@ class EpipolarCost final : public ceres::CostFunction {
         Q_j_(camera_j.Q),
         s_i_(camera_i.s),
         s_j_(camera_j.s),
-        u_i_(camera_i.intrinsics.Normalize(match.pixel1)),
-        u_j_(camera_j.intrinsics.Normalize(match.pixel2)),
-        per_pixel_i_(1.0 / camera_i.intrinsics.fx, 1.0 / camera_i.intrinsics.fy),
-        per_pixel_j_(1.0 / camera_j.intrinsics.fx, 1.0 / camera_j.intrinsics.fy),
+        i_(RayPointOf(camera_i, match.pixel1)),
+        j_(RayPointOf(camera_j, match.pixel2)),
         weight_(1.0 / sigma_px) {
     gradient2_rounding_ = kRounding * kRounding *
-                          (u_i_.squaredNorm() * std::pow(per_pixel_j_.maxCoeff(), 2) +
-                           u_j_.squaredNorm() * std::pow(per_pixel_i_.maxCoeff(), 2));
+                          (i_.p.squaredNorm() * std::pow(j_.J.cwiseAbs().maxCoeff(), 2) +
+                           j_.p.squaredNorm() * std::pow(i_.J.cwiseAbs().maxCoeff(), 2));
     int poses = motion == MotionBlocks::kRelative ? 1 : 2;
     if (extrinsics == ExtrinsicBlocks::kOne) poses += 1;
     if (extrinsics == ExtrinsicBlocks::kTwo) poses += 2;
@@ -158,7 +158,7 @@ class EpipolarCost final : public ceres::CostFunction {
   //
   // With y = R Q_i u_i and z = Q_j u_j, in f2, the constraint is C = z . (b x y) = u_j'E u_i. It is
   // divided by |g|, g = (g_i, g_j) its derivatives by the pixels. Since d|g|^2 / 2 = h_j'dE u_i +
-  // u_j'dE h_i for h = g / (fx, fy), 0 in the third place,
+  // u_j'dE h_i for h = J g, J = du/d(pixel),
   //   dr = (dC - C / |g|^2 (h_j'dE u_i + u_j'dE h_i)) / |g|
   // is the differential of two triple products z . (b x y) with constant camera vectors: of
   // (u_j - C / |g|^2 h_j, u_i) and of (-C / |g|^2 u_j, h_i).
@@ -178,22 +178,20 @@ class EpipolarCost final : public ceres::CostFunction {
     b /= baseline;  // which does not change the residual
 
     const Eigen::Matrix3d RQ_i = R * Q_i;
-    const Eigen::Vector3d y = RQ_i * u_i_;
-    const Eigen::Vector3d z = Q_j * u_j_;
+    const Eigen::Vector3d y = RQ_i * i_.p;
+    const Eigen::Vector3d z = Q_j * j_.p;
     const Eigen::Vector3d b_y = b.cross(y);
-    Eigen::Vector3d h_i = RQ_i.transpose() * z.cross(b);  // E'u_j, so far
-    Eigen::Vector3d h_j = Q_j.transpose() * b_y;          // E u_i
-    h_i << per_pixel_i_.cwiseProduct(h_i.head<2>()), 0.0;
-    h_j << per_pixel_j_.cwiseProduct(h_j.head<2>()), 0.0;
-    const double gradient2 = h_i.squaredNorm() + h_j.squaredNorm();
+    const Eigen::Vector2d g_i = i_.J.transpose() * (RQ_i.transpose() * z.cross(b));  // J'E'u_j
+    const Eigen::Vector2d g_j = j_.J.transpose() * (Q_j.transpose() * b_y);          // J'E u_i
+    const double gradient2 = g_i.squaredNorm() + g_j.squaredNorm();
     if (!(gradient2 > gradient2_rounding_) || !std::isfinite(gradient2)) return true;  // an epipole
     const double C = z.dot(b_y);
     const double weight = weight_ / std::sqrt(gradient2);
     *residual = weight * C;
     if (by == nullptr) return true;
 
-    h_i.head<2>() = per_pixel_i_.cwiseProduct(h_i.head<2>()).eval();
-    h_j.head<2>() = per_pixel_j_.cwiseProduct(h_j.head<2>()).eval();
+    const Eigen::Vector3d h_i = i_.J * g_i;
+    const Eigen::Vector3d h_j = j_.J * g_j;
     const double ratio = C / gradient2;
     const Eigen::Vector3d y_of[2] = {y, RQ_i * h_i};
     const Eigen::Vector3d z_of[2] = {weight * (z - ratio * (Q_j * h_j)), -weight * ratio * z};
@@ -216,10 +214,9 @@ class EpipolarCost final : public ceres::CostFunction {
   const QuaternionOrder order_;
   const Eigen::Matrix3d Q_i_, Q_j_;  // of the rig, where they are no parameters
   const Eigen::Vector3d s_i_, s_j_;
-  const Eigen::Vector3d u_i_, u_j_;                  // normalized image points
-  const Eigen::Vector2d per_pixel_i_, per_pixel_j_;  // 1 / (fx, fy)
-  const double weight_;                              // 1 / sigma
-  double gradient2_rounding_;                        // |g|^2 of rounding errors, for |b| = 1
+  const RowPoint i_, j_;       // along the rays
+  const double weight_;        // 1 / sigma
+  double gradient2_rounding_;  // |g|^2 of rounding errors, for |b| = 1
 };
 
 ceres::CostFunction* Make(const Rig& rig, const Match& match, double sigma_px,
@@ -232,6 +229,10 @@ ceres::CostFunction* Make(const Rig& rig, const Match& match, double sigma_px,
       !in_rig(match.camera2) || !match.pixel1.allFinite() || !match.pixel2.allFinite() ||
       !rig.IsValid(&unused) ||
       (order != QuaternionOrder::kCeres && order != QuaternionOrder::kEigen)) {
+    return nullptr;
+  }
+  if (!RayPointOf(rig.cameras[match.camera1], match.pixel1).p.allFinite() ||
+      !RayPointOf(rig.cameras[match.camera2], match.pixel2).p.allFinite()) {
     return nullptr;
   }
   const ExtrinsicBlocks extrinsics = !with_extrinsics  ? ExtrinsicBlocks::kNone

@@ -45,11 +45,11 @@
 //   from both epipoles. For the same effect pass sigma_px / weight as sigma_px.
 //
 // Errors: a factory returns null if sigma_px is not within 1e-12 and 1e12, or the rig is not valid
-// (Rig::IsValid). So it does if the match names a camera that is not there, a pixel is not finite,
-// or `order` is not a value of its enum. Test for null: ceres::Problem::AddResidualBlock aborts on
-// it.
-// Evaluate() returns false if a parameter is not finite or a quaternion is zero (a squared norm
-// that underflows or overflows counts as such), at E = 0, and for nothing else.
+// (Rig::IsValid). So it does if the match names a camera that is not there, a pixel is not finite
+// or has no ray (core/camera.h), or `order` is not a value of its enum. Test for null:
+// ceres::Problem::AddResidualBlock aborts on it. Evaluate() returns false if a parameter is not
+// finite or a quaternion is zero (a squared norm that underflows or overflows counts as such), at E
+// = 0, and for nothing else.
 //
 // Ownership: the caller owns the cost and usually passes it to a ceres::Problem, as any cost
 // function. Rig and match are copied: they need not outlive the cost. A cost is immutable: many

@@ -202,6 +202,8 @@ double Refiner::VotedLength() const {
   constexpr double kLoose = 3.0;    // thresholds
   constexpr double kReached = 0.1;  // of the logarithm: the fit has been as far as that
   const double length = fit_.pose.t.norm();
+  const std::vector<double> votes = VoteOnLength(matches_, fit_.pose, fit_.noise.sigma_px);
+  if (votes.empty()) return length;
   const auto score = [&](double of_length, double bound) {
     Pose pose = fit_.pose;
     pose.t *= of_length / length;
@@ -209,7 +211,7 @@ double Refiner::VotedLength() const {
   };
   double best = length;
   double least = score(length, std::numeric_limits<double>::infinity());
-  for (const double voted : VoteOnLength(matches_, fit_.pose, fit_.noise.sigma_px)) {
+  for (const double voted : votes) {
     if (std::abs(std::log(voted / length)) < kReached) continue;
     const double score_of_voted = score(voted, least);
     if (!(score_of_voted < least)) continue;
@@ -358,7 +360,7 @@ void Refiner::Describe(bool done) {
     DescribeObservability(options_, matches_, point_, fitter_, fit_, &summary_);
   }
   summary_.num_inliers = fit_.num_inliers;
-  summary_.inliers.assign(matches_.size(), 0);
+  summary_.inliers.assign(matches_.num_given(), 0);
   for (int k = 0; k < matches_.size(); ++k) {
     summary_.inliers[matches_.original(k)] = fit_.inliers[k];
   }

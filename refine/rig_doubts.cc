@@ -80,11 +80,8 @@ std::optional<int> InliersIfSwapped(const FramePair& pair, int num_inliers, cons
     best = std::max(best, inliers_with(swapped));
   };
   try_swapped(false);
-  const PinholeCamera& first = pair.rig.cameras[cameras.first].intrinsics;
-  const PinholeCamera& second = pair.rig.cameras[cameras.second].intrinsics;
-  const bool alike = first.fx == second.fx && first.fy == second.fy && first.cx == second.cx &&
-                     first.cy == second.cy;
-  if (!alike) try_swapped(true);
+  const auto& all = pair.rig.cameras;
+  if (!SameLens(all[cameras.first].intrinsics, all[cameras.second].intrinsics)) try_swapped(true);
   if (best < num_inliers + kMoreInliers || total - best > kFewerOutliers * outliers) {
     return std::nullopt;
   }

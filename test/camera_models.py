@@ -3,7 +3,7 @@
 
     test/camera_models.py PROGRAM [--colmap]
 
-PROGRAM is camera_model_points of the build. Each of its points is projected here by the formula of the model's source,
+PROGRAM is camera_points of the build. Each of its points is projected here by the formula of the model's source,
 written down anew, and must have its pixel to 1e-6 pixels. The sources: OpenCV's calib3d for opencv, full_opencv and
 opencv_fisheye; COLMAP's sensor/models for the other models of COLMAP; Mei and Rives 2007 (omni), Usenko, Demmel and
 Cremers 2018 (double_sphere, fov beyond 90 degrees), Khomutenko, Garcia and Martinet 2016 (eucm).

@@ -156,10 +156,11 @@ class Programs:
                                self.unknown_noise("rigel_estimate"))
         return {os.path.basename(pair["pair"]): pair for pair in report["pairs"]}, report
 
-    def compare(self, matches, flags=()):
+    def compare(self, matches, flags=(), times=False):
         """The report of rigel_compare, auto and unknown noise, with the results of each pair."""
         return self.run_json("rigel_compare", ["--matches=" + matches, "--solvers=auto",
-                                               "--per_pair", "--no_times", *flags] +
+                                               "--per_pair", *([] if times else ["--no_times"]),
+                                               *flags] +
                              self.unknown_noise("rigel_compare"))
 
     def simulate(self, output, rig, pairs, **settings):
@@ -562,29 +563,53 @@ def compare_figures(report):
     return figures
 
 
-# --- Pinholes and the bound ---------------------------------------------------------------------
+# --- Cameras and the bound ----------------------------------------------------------------------
 
 class Camera:
-    """A pinhole, from the words of its line: its rays and how they change with the pixel."""
+    """A pinhole or an opencv_fisheye, from the words of its line: its rays and how they change with
+    the pixel."""
 
     def __init__(self, words):
-        if words[2] != "pinhole":
-            raise Failure("camera %s is no pinhole" % words[1])
+        count = {"pinhole": 4, "opencv_fisheye": 8}.get(words[2])
+        if count is None:
+            raise Failure("camera %s is a %s, which is not known here" % (words[1], words[2]))
         values = [float(word) for word in words[3:]]
-        self.fx, self.fy, self.cx, self.cy, self.width, self.height = values[:6]
-        self.rotation, self.position = matrix_of(values[6:10]), values[10:13]
+        self.fx, self.fy, self.cx, self.cy = values[:4]
+        self.fisheye = values[4:count] if count > 4 else None
+        self.width, self.height = values[count:count + 2]
+        self.rotation = matrix_of(values[count + 2:count + 6])
+        self.position = values[count + 6:count + 9]
+
+    def radius(self, angle):
+        """How far from the centre the image of a fisheye is, in focal lengths."""
+        return angle * (1 + sum(k * angle ** (2 * n + 2) for n, k in enumerate(self.fisheye)))
 
     def ray(self, u, v):
-        return apply(self.rotation, [(u - self.cx) / self.fx, (v - self.cy) / self.fy, 1.0])
+        x, y = (u - self.cx) / self.fx, (v - self.cy) / self.fy
+        if self.fisheye is None:
+            return apply(self.rotation, [x, y, 1.0])
+        radius, low, high = math.hypot(x, y), 0.0, math.pi
+        for _ in range(60):  # until rounding ends the bisection
+            angle = (low + high) / 2
+            low, high = (angle, high) if self.radius(angle) < radius else (low, angle)
+        across = math.sin(low) / radius if radius > 0 else 0.0
+        return apply(self.rotation, [x * across, y * across, math.cos(low)])
 
-    def ray_by_pixel(self):
+    def ray_by_pixel(self, u, v):
         """Derivatives of ray() by u and v."""
-        columns = transposed(self.rotation)
-        return scaled(columns[0], 1 / self.fx), scaled(columns[1], 1 / self.fy)
+        if self.fisheye is None:
+            columns = transposed(self.rotation)
+            return scaled(columns[0], 1 / self.fx), scaled(columns[1], 1 / self.fy)
+        step = 1e-3
+        return [scaled(minus(self.ray(u + du, v + dv), self.ray(u - du, v - dv)), 1 / (2 * step))
+                for du, dv in ((step, 0), (0, step))]
 
     def project(self, point):
-        """The pixel of a point of the body frame, or None behind the camera."""
+        """The pixel of a point of the body frame, or None behind a pinhole."""
         x, y, z = apply(transposed(self.rotation), minus(point, self.position))
+        if self.fisheye is not None:
+            across = self.radius(math.atan2(math.hypot(x, y), z)) / math.hypot(x, y)
+            return (self.fx * across * x + self.cx, self.fy * across * y + self.cy)
         return (self.fx * x / z + self.cx, self.fy * y / z + self.cy) if z > 0.1 else None
 
     def sees(self, pixel):
@@ -607,9 +632,9 @@ def constraint(match, cameras, motion, sigmas):
     by_ray, by_other = cross(other, baseline), cross(baseline, ray)
     derivative = add(cross(ray, by_ray), cross(arm, normal)) + normal
     variance = 0.0
-    for direction in first.ray_by_pixel():
+    for direction in first.ray_by_pixel(u, v):
         variance += (sigmas[i] * dot(by_ray, apply(rotation, direction))) ** 2
-    for direction in second.ray_by_pixel():
+    for direction in second.ray_by_pixel(u2, v2):
         variance += (sigmas[j] * dot(by_other, direction)) ** 2
     return value, derivative, math.sqrt(variance)
 
@@ -656,7 +681,7 @@ def rotation_bound(matches, cameras, rotation, sigma_px):
         ray = apply(rotation, camera.ray(u, v))
         if pixel_of(ray) is None:
             continue
-        by_first = derivatives([apply(rotation, d) for d in camera.ray_by_pixel()], ray)
+        by_first = derivatives([apply(rotation, d) for d in camera.ray_by_pixel(u, v)], ray)
         by_turn = derivatives([cross(axis, ray) for axis in ([1, 0, 0], [0, 1, 0], [0, 0, 1])], ray)
         variance = times(by_first, transposed(by_first))
         for k in range(2):

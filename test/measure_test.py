@@ -174,6 +174,16 @@ class Commands(unittest.TestCase):
         self.assertEqual(figures["mean"]["failures"], 0)
         self.assertGreater(figures["mean"]["nees_rotation"], 0)
 
+    def test_fisheye(self):
+        rigs = self.run_command("fisheye.py", "--pairs=2")["rigs"]
+        self.assertEqual([rig["failures"] for rig in rigs], [0, 0, 0, 0])
+        self.assertEqual([rig["beyond_90_percent"] > 0 for rig in rigs],
+                         [False, False, True, True])
+        for rig in rigs:
+            # The bound of the program and that of measure.py, with lenses of its own.
+            self.assertAlmostEqual(rig["bound_over_own"], 1, delta=0.01)
+            self.assertLess(rig["rotation"], 3)
+
     def test_one_camera(self):
         figures = self.run_command("one_camera.py", "--turns=5", "--pairs=2")
         self.assertEqual([turn["pairs"] for turn in figures["turns"]], [2])

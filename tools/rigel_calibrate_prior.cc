@@ -133,10 +133,9 @@ struct Clip {
 bool SameCameras(const Rig& a, const Rig& b) {
   return std::equal(a.cameras.begin(), a.cameras.end(), b.cameras.begin(), b.cameras.end(),
                     [](const RigCamera& camera1, const RigCamera& camera2) {
-                      const PinholeCamera& c1 = camera1.intrinsics;
-                      const PinholeCamera& c2 = camera2.intrinsics;
-                      return c1.fx == c2.fx && c1.fy == c2.fy && c1.cx == c2.cx && c1.cy == c2.cy &&
-                             c1.width == c2.width && c1.height == c2.height;
+                      const Camera& c1 = camera1.intrinsics;
+                      const Camera& c2 = camera2.intrinsics;
+                      return SameLens(c1, c2) && c1.width == c2.width && c1.height == c2.height;
                     });
 }
 

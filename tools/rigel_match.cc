@@ -53,9 +53,10 @@ constexpr char kUsage[] =
     "\n"
     "Matches features of consecutive frames, in all four combinations of the left and the right\n"
     "camera: pairs of mutually nearest descriptors that pass the ratio test, without a check of\n"
-    "the geometry. Pixels are undistorted. If the data set has a ground truth, the files get\n"
-    "times, truth and gravity. Frames count from 0; a frame of EuRoC is a pair of images of one\n"
-    "time. --attitude, --odometry and --gyro add priors from sensors, as rigel_convert does.\n";
+    "the geometry. Pixels are undistorted: cameras are pinholes. If the data set has a ground\n"
+    "truth, the files get times, truth and gravity. Frames count from 0; a frame of EuRoC is a\n"
+    "pair of images of one time. --attitude, --odometry and --gyro add priors from sensors, as\n"
+    "rigel_convert does.\n";
 
 bool IsKitti() { return !FLAGS_kitti_root.empty(); }
 

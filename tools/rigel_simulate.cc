@@ -29,8 +29,7 @@ DEFINE_string(
     "other match files");
 DEFINE_string(scene, "box", "box, or street: a car on a street, with the cameras of --rig");
 DEFINE_string(rig, "",
-              "with --scene=street: rig file (JSON, docs/formats.md) of the cameras. Distortion is "
-              "left out");
+              "with --scene=street: rig file (JSON, docs/formats.md) of the cameras, of any lens");
 DEFINE_double(ground_m, 0.35,
               "with --scene=street: how far the ground is below the body's origin, metres. Without "
               "it that of the rig file, if it says so");
@@ -317,10 +316,6 @@ bool TakeRig(StreetOptions* street, std::string* error) {
   }
   street->rig = file.rig;
   if (file.ground_m && !IsGiven("ground_m")) street->ground_m = *file.ground_m;
-  if (file.num_undistorted > 0) {
-    std::cerr << PrintablePath(FLAGS_rig) << ": the distortion of " << file.num_undistorted
-              << " of " << file.rig.size() << " cameras is left out\n";
-  }
   if (!file.down || !file.forward) {
     std::cerr << PrintablePath(FLAGS_rig) << ": taken from the cameras: down "
               << DirectionText(street->axes.down) << ", forward "

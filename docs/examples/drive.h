@@ -28,7 +28,7 @@ inline rigel::Pose TrueMotion(int frame1, int frame2) {
 inline rigel::FramePair MatchFrames(int frame1, int frame2, bool between_cameras = true) {
   rigel::FramePair pair;
   rigel::RigCamera camera;
-  camera.intrinsics = {400, 400, 320, 240, 640, 480};
+  camera.intrinsics = rigel::Camera::Pinhole(400, 400, 320, 240, 640, 480);
   for (const double x : {-0.5, 0.5}) {
     camera.s = {x, 0, 0};
     pair.rig.cameras.push_back(camera);
@@ -48,10 +48,11 @@ inline rigel::FramePair MatchFrames(int frame1, int frame2, bool between_cameras
     const rigel::RigCamera& c1 = pair.rig.cameras[match.camera1];
     const rigel::RigCamera& c2 = pair.rig.cameras[match.camera2];
     match.pixel1 = {uniform(0, 640), uniform(0, 480)};
-    const Eigen::Vector3d X1 = uniform(5, 30) * c1.intrinsics.Normalize(match.pixel1) + c1.s;
+    const Eigen::Vector3d X1 = uniform(5, 30) * AlongRay(c1.intrinsics, match.pixel1) + c1.s;
     const Eigen::Vector3d X2 = TrueMotion(frame1, frame2) * X1;
-    match.pixel2 = c2.intrinsics.Project(X2 - c2.s);
-    if (X2.z() < 1 || !c2.intrinsics.InImage(match.pixel2)) continue;
+    if (!Project(c2.intrinsics, X2 - c2.s, &match.pixel2) || !c2.intrinsics.InImage(match.pixel2)) {
+      continue;
+    }
     if (k % 5 == 0) match.pixel2 = {uniform(0, 640), uniform(0, 480)};
     match.pixel1 += rigel::Pixel{noise(), noise()};
     match.pixel2 += rigel::Pixel{noise(), noise()};

@@ -4,7 +4,7 @@
 #include "rigel/refine/estimate_motion.h"
 
 int main() {
-  const rigel::PinholeCamera pinhole{400, 400, 320, 240, 640, 480};  // fx, fy, cx, cy, image size
+  const auto pinhole = rigel::Camera::Pinhole(400, 400, 320, 240, 640, 480);  // fx fy cx cy, size
   const Eigen::Matrix3d Q = Eigen::Matrix3d::Identity();  // body_from_camera: both look along +z
   rigel::FramePair pair;
   pair.rig.cameras = {{pinhole, Q, {-0.5, 0, 0}}, {pinhole, Q, {0.5, 0, 0}}};  // positions, metres

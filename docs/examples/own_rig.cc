@@ -12,7 +12,7 @@ namespace {
 // windscreen look ahead, 0.8 m apart.
 rigel::Rig CarRig() {
   rigel::RigCamera camera;
-  camera.intrinsics = {800, 800, 640, 360, 1280, 720};  // fx, fy, cx, cy, width, height
+  camera.intrinsics = rigel::Camera::Pinhole(800, 800, 640, 360, 1280, 720);  // fx fy cx cy, size
   // X_body = Q X_camera + s. The columns of Q are the camera's right, down and forward.
   camera.Q << 0, 0, 1,  //
       -1, 0, 0,         //
@@ -26,10 +26,12 @@ rigel::Rig CarRig() {
 }
 
 rigel::Pixel Project(const rigel::RigCamera& camera, const Eigen::Vector3d& X_body) {
-  return camera.intrinsics.Project(camera.Q.transpose() * (X_body - camera.s));
+  rigel::Pixel pixel;
+  rigel::Project(camera.intrinsics, camera.Q.transpose() * (X_body - camera.s), &pixel);
+  return pixel;
 }
 
-// Stands for your matcher: pixels of the same point at time 1 and at time 2, undistorted.
+// Stands for your matcher: pixels of the same point at time 1 and at time 2.
 std::vector<rigel::Match> Matches(const rigel::Rig& rig, const rigel::Pose& truth) {
   std::vector<rigel::Match> matches;
   for (int k = 0; k < 120; ++k) {

@@ -46,11 +46,7 @@ FramePair MakeHostilePair(int num_matches, uint64_t seed) {
   pair.prior.axis = pair.prior.normal = Eigen::Vector3d::UnitY();
   for (const double side : {-0.5, 0.5}) {
     RigCamera camera;
-    camera.intrinsics.fx = camera.intrinsics.fy = 400.0;
-    camera.intrinsics.cx = 0.5 * kWidth;
-    camera.intrinsics.cy = 0.5 * kHeight;
-    camera.intrinsics.width = kWidth;
-    camera.intrinsics.height = kHeight;
+    camera.intrinsics = Camera::Pinhole(400.0, 400.0, 0.5 * kWidth, 0.5 * kHeight, kWidth, kHeight);
     camera.s = Eigen::Vector3d(side, 0.0, 0.0);
     pair.rig.cameras.push_back(camera);
   }

@@ -106,7 +106,7 @@ bool EstimateWithOpenGv(const std::string& peer, const RansacOptions& options,
       /*randomSeed=*/false);
   // Its error is the sum over both views of 1 - cos of the angle.
   ransac.threshold_ = 1.0 - std::cos(ThresholdPx(options.threshold_px, pair.rig) /
-                                     pair.rig.cameras[0].intrinsics.fx);
+                                     pair.rig.cameras[0].intrinsics.PixelsPerRadian().x());
   ransac.max_iterations_ = options.max_iterations;
   ransac.probability_ = options.confidence;
   if (!ransac.computeModel()) return false;

@@ -32,7 +32,7 @@ std::vector<char> TrueInliers(const FramePair& pair) {
   std::vector<double> errors;
   std::vector<char> grouped;
   matches.SelectInliers(*pair.truth, kBoundSigmas * *pair.noise_px, &errors, &grouped);
-  std::vector<char> inliers(grouped.size());
+  std::vector<char> inliers(pair.matches.size());
   for (int k = 0; k < matches.size(); ++k) inliers[matches.original(k)] = grouped[k];
   return inliers;
 }

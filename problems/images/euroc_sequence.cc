@@ -100,8 +100,8 @@ ImageCamera ParseCamera(const YAML::Node& sensor) {
                                           "resolution: expected the width and height in pixels");
     }
   }
-  camera.intrinsics = {
-      k[0], k[1], k[2], k[3], static_cast<int>(size[0]), static_cast<int>(size[1])};
+  camera.intrinsics =
+      Camera::Pinhole(k[0], k[1], k[2], k[3], static_cast<int>(size[0]), static_cast<int>(size[1]));
   const std::vector<double> d =
       Numbers(sensor["distortion_coefficients"], "distortion_coefficients", 4);
   result.distortion = RadialTangential{d[0], d[1], d[2], d[3]};

@@ -53,9 +53,9 @@ void Undistort(const ImageCamera& camera, std::vector<cv::Point2d>* points,
   constexpr int kMaxIterations = 50;
   constexpr double kEpsilon = 1e-6;   // px, where it ends: far below the noise
   constexpr double kMaxError = 1e-2;  // px, of a point that was distorted again
-  const PinholeCamera& c = camera.camera.intrinsics;
+  const Camera& c = camera.camera.intrinsics;
   const RadialTangential& d = *camera.distortion;
-  const cv::Matx33d K(c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1);
+  const cv::Matx33d K(c.fx(), 0, c.cx(), 0, c.fy(), c.cy(), 0, 0, 1);
   std::vector<cv::Point2d> normalized;
   cv::undistortPoints(
       *points, normalized, K, cv::Vec4d(d.k1, d.k2, d.p1, d.p2), cv::noArray(), cv::noArray(),
@@ -65,9 +65,9 @@ void Undistort(const ImageCamera& camera, std::vector<cv::Point2d>* points,
     const Eigen::Vector2d again = d.Distort(u);
     const cv::Point2d& seen = (*points)[k];
     const double error =
-        std::hypot(c.fx * again.x() + c.cx - seen.x, c.fy * again.y() + c.cy - seen.y);
+        std::hypot(c.fx() * again.x() + c.cx() - seen.x, c.fy() * again.y() + c.cy() - seen.y);
     (*valid)[k] = error <= kMaxError;
-    (*points)[k] = {c.fx * u.x() + c.cx, c.fy * u.y() + c.cy};
+    (*points)[k] = {c.fx() * u.x() + c.cx(), c.fy() * u.y() + c.cy()};
   }
 }
 
@@ -97,7 +97,7 @@ bool ExtractFeatures(const FeatureOptions& options, const ImageCamera& camera,
                      const std::string& path, ImageFeatures* features, std::string* error) try {
   cv::Mat image;
   if (!ReadImage(path, &image, error)) return false;
-  const PinholeCamera& c = camera.camera.intrinsics;
+  const Camera& c = camera.camera.intrinsics;
   if (c.width > 0 && image.size() != cv::Size(c.width, c.height)) {
     *error = Printable(path) + ": " + std::to_string(image.cols) + " x " +
              std::to_string(image.rows) + " pixels, expected " + std::to_string(c.width) + " x " +

@@ -74,10 +74,7 @@ bool ParseProjection(std::string_view numbers, RigCamera* camera, std::string* e
     *error = "expected the projection of a rectified camera: FX 0 CX A 0 FY CY B 0 0 1 C";
     return false;
   }
-  camera->intrinsics.fx = p[0];
-  camera->intrinsics.fy = p[5];
-  camera->intrinsics.cx = p[2];
-  camera->intrinsics.cy = p[6];
+  camera->intrinsics = Camera::Pinhole(p[0], p[5], p[2], p[6]);
   const Eigen::Vector3d t((p[3] - p[2] * p[11]) / p[0], (p[7] - p[6] * p[11]) / p[5], p[11]);
   camera->Q.setIdentity();
   // 0 - t, and not -t: no minus sign before the zeros of the left camera.

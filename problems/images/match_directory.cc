@@ -46,11 +46,11 @@ std::string SettingsText(const SequenceMatchingOptions& options, const ImageSequ
   }
   for (size_t k = 0; k < sequence.cameras.size(); ++k) {
     const RigCamera& camera = sequence.cameras[k].camera;
-    const PinholeCamera& c = camera.intrinsics;
+    const Camera& c = camera.intrinsics;
     const Eigen::Matrix3d& Q = camera.Q;
     const std::string name = "camera " + std::to_string(k);
-    text += name + " focal" + NumbersText({c.fx, c.fy});
-    text += name + " centre" + NumbersText({c.cx, c.cy});
+    text += name + " focal" + NumbersText({c.fx(), c.fy()});
+    text += name + " centre" + NumbersText({c.cx(), c.cy()});
     for (int row = 0; row < 3; ++row) {
       text += name + " row " + std::to_string(row) +
               NumbersText({Q(row, 0), Q(row, 1), Q(row, 2), camera.s[row]});

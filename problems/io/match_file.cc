@@ -41,6 +41,15 @@ int FindKeyword(std::string_view word) {
 
 bool IsControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
+// The words of a camera's line, with the names of the model's parameters.
+std::string UsageOf(CameraModel model) {
+  std::string usage = std::string("camera K ") + CameraModelName(model) + " ";
+  for (const char* c = CameraParameterNames(model); *c != 0; ++c) {
+    usage += *c >= 'a' && *c <= 'z' ? static_cast<char>(*c - 'a' + 'A') : *c;
+  }
+  return usage + " WIDTH HEIGHT QW QX QY QZ SX SY SZ";
+}
+
 class Parser : private MatchLines {
  public:
   Parser(std::string_view text, const std::string& name, std::string* error)
@@ -114,18 +123,35 @@ class Parser : private MatchLines {
   }
 
   bool Camera() {
+    constexpr size_t kLeast = 3;  // words: with the model, which says how many there are
+    if (num_columns() < kLeast) {
+      return Fail("no camera model, expected '" + std::string(kKeywords[kCamera].usage) + "'");
+    }
     int index;
     if (!Integer(1, 0, &index)) return false;
-    if (Column(2) != "pinhole") {
-      return Fail("camera model " + Quoted(Column(2)) + ", expected 'pinhole'");
-    }
     DeclaredCamera declared;
     declared.line = line();
-    PinholeCamera& c = declared.camera.intrinsics;
+    rigel::Camera& c = declared.camera.intrinsics;
+    if (!ParseCameraModel(Column(2), &c.model)) {
+      return Fail("camera model " + Quoted(Column(2)) + ", expected one of " + CameraModelNames());
+    }
+    const size_t num_parameters = NumCameraParameters(c.model);
+    camera_usage_ = UsageOf(c.model);
+    SetUsage(camera_usage_);
+    if (!CheckColumns(kCameraColumns + num_parameters)) return false;
+    std::string_view names = CameraParameterNames(c.model);
+    for (size_t k = 0; k < num_parameters; ++k) {
+      const bool is_focal_length = names.front() == 'f';
+      double* const value = &c.parameters[k];
+      if (!(is_focal_length ? PositiveNumber(3 + k, value) : Number(3 + k, value))) return false;
+      names.remove_prefix(std::min(names.find(' ') + 1, names.size()));
+    }
+    std::string what;
+    if (!c.IsValid(&what)) return Fail(what);
+    const size_t next = 3 + num_parameters;
     Pose body_from_camera;
-    if (!PositiveNumber(3, &c.fx) || !PositiveNumber(4, &c.fy) || !Number(5, &c.cx) ||
-        !Number(6, &c.cy) || !Integer(7, 1, &c.width) || !Integer(8, 1, &c.height) ||
-        !RotationAndVector(9, &body_from_camera)) {
+    if (!Integer(next, 1, &c.width) || !Integer(next + 1, 1, &c.height) ||
+        !RotationAndVector(next + 2, &body_from_camera)) {
       return false;
     }
     declared.camera.Q = body_from_camera.R;
@@ -357,6 +383,7 @@ class Parser : private MatchLines {
 
   FramePair pair_;
   DeclaredCameras cameras_, sigmas_, times_;
+  std::string camera_usage_;  // of the last camera's model
   MatchRows rows_;
   int num_matches_ = 0;
 };
@@ -409,9 +436,10 @@ std::string FormatMatches(const FramePair& pair) {
   f.Word(kKeywords[kFormat].usage).EndLine();
   for (int k = 0; k < pair.rig.size(); ++k) {
     const RigCamera& camera = pair.rig.cameras[k];
-    const PinholeCamera& c = camera.intrinsics;
-    f.Word(kKeywords[kCamera].name).Number(k).Word("pinhole");
-    f.Number(c.fx).Number(c.fy).Number(c.cx).Number(c.cy).Number(c.width).Number(c.height);
+    const Camera& c = camera.intrinsics;
+    f.Word(kKeywords[kCamera].name).Number(k).Word(CameraModelName(c.model));
+    for (int i = 0; i < NumCameraParameters(c.model); ++i) f.Number(c.parameters[i]);
+    f.Number(c.width).Number(c.height);
     f.Quaternion(camera.Q).Vector(camera.s).EndLine();
   }
   WriteSigmasAndTimes(pair.rig, &f);

@@ -1,7 +1,7 @@
 // Match files: frame pairs as UTF-8 text, format `rigmatch 1`.
 //
 //   format rigmatch 1
-//   camera K pinhole FX FY CX CY WIDTH HEIGHT QW QX QY QZ SX SY SZ
+//   camera K MODEL PARAMETER ... WIDTH HEIGHT QW QX QY QZ SX SY SZ
 //   camera_sigma K ROT_DEG POS_M [FOCAL_FRACTION]
 //   camera_time K DT
 //   time T1 T2
@@ -29,9 +29,10 @@
 //
 // `format`, `matches` and at least `camera 0` are required. Header lines come in any order
 // before `matches`. `rotation` is checked and not kept. `#` starts a comment line, blank lines are
-// ignored, columns are separated by blanks or tabs. Lengths are metres, times seconds, pixels
-// undistorted, sigmas of directions degrees (radians in MotionPrior); frames and quaternion order
-// as in rigel/core/pose.h and rigel/core/rig.h.
+// ignored, columns are separated by blanks or tabs. MODEL and its parameters are those of
+// rigel/core/camera.h, and pixels are what this camera records. Lengths are metres, times seconds,
+// sigmas of directions degrees (radians in MotionPrior); frames and quaternion order as in
+// rigel/core/pose.h and rigel/core/rig.h.
 //
 // No function here logs, throws on what a file holds, or ends the process. An error message is
 // one line of printable text: "path:line: what was wrong, what was expected", without the line

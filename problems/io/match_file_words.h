@@ -2,10 +2,13 @@
 #ifndef RIGEL_PROBLEMS_IO_MATCH_FILE_WORDS_H_
 #define RIGEL_PROBLEMS_IO_MATCH_FILE_WORDS_H_
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
 #include <string_view>
+
+#include "rigel/core/camera.h"
 
 namespace rigel::match_file {
 
@@ -43,7 +46,7 @@ struct Keyword {
 inline constexpr size_t kAnyColumns = 0;
 inline constexpr std::array<Keyword, kNumKeywords> kKeywords = {{
     {"format", "format rigmatch 1", 3},
-    {"camera", "camera K pinhole FX FY CX CY WIDTH HEIGHT QW QX QY QZ SX SY SZ", 16},
+    {"camera", "camera K MODEL PARAMETER ... WIDTH HEIGHT QW QX QY QZ SX SY SZ", kAnyColumns},
     {"camera_sigma", "camera_sigma K ROT_DEG POS_M [FOCAL_FRACTION]", kAnyColumns},
     {"camera_time", "camera_time K DT", 3},
     {"time", "time T1 T2", 3},
@@ -97,8 +100,11 @@ inline constexpr std::array<std::string_view, kNumColumns> kColumnNames = {
     "u0",     "v0",     "u20",         "v20"};
 inline constexpr size_t kNumDefaultColumns = kScore + 1;
 
-// Words of the longest line: `columns` with the name of each.
-inline constexpr size_t kMaxColumns = kNumColumns + 1;
+// Of a camera's line: its keyword, number, model, image size, quaternion and position.
+inline constexpr size_t kCameraColumns = 12;
+// Words of the longest line: `columns` with the name of each, or a camera with most parameters.
+inline constexpr size_t kMaxColumns =
+    std::max<size_t>(kNumColumns + 1, kCameraColumns + Camera::kMostParameters);
 
 }  // namespace rigel::match_file
 

@@ -23,22 +23,18 @@ using Json = nlohmann::ordered_json;
 // Directions and quaternions must have unit length to within this, as in match files.
 constexpr double kMaxNormError = 1e-3;
 
-struct CameraModel {
-  std::string_view name;
-  size_t num_parameters;
-  bool two_focal_lengths;  // fx fy, or one f for both; then cx cy
-};
-// Those of COLMAP of which the pinhole part is a good camera.
-constexpr CameraModel kModels[] = {{"pinhole", 4, true},        {"simple_pinhole", 3, false},
-                                   {"simple_radial", 4, false}, {"radial", 5, false},
-                                   {"opencv", 8, true},         {"full_opencv", 12, true}};
-
-// Of the older keys: how a model's text begins, and its number of distortion coefficients.
+// Of the older keys: how a model's text begins, and which parameters of `model` its distortion is.
 struct OlderModel {
   std::string_view begin;
+  CameraModel model;
+  std::array<int, 5> places;  // after fx fy cx cy; the first num_coefficients
   size_t num_coefficients;
 };
-constexpr OlderModel kOlderModels[] = {{"pinhole", 0}, {"radial", 3}, {"brown", 5}};
+constexpr OlderModel kOlderModels[] = {
+    {"pinhole", CameraModel::kPinhole, {}, 0},
+    {"radial", CameraModel::kFullOpencv, {0, 1, 4}, 3},       // k1 k2 k3
+    {"brown", CameraModel::kFullOpencv, {0, 1, 2, 3, 4}, 5},  // k1 k2 p1 p2 k3
+    {"equidistant", CameraModel::kOpencvFisheye, {0, 1, 2, 3}, 4}};
 
 [[noreturn]] void Fail(const std::string& message) { throw std::runtime_error(message); }
 
@@ -88,50 +84,43 @@ Eigen::Matrix<double, kSize, 1> UnitVector(const Json& value, const char* what) 
   return v.normalized();
 }
 
-bool AnyNot0(const double* begin, const double* end) {
-  return std::any_of(begin, end, [](double x) { return x != 0; });
-}
-
-[[noreturn]] void FailModel(const std::string& model, const char* expected) {
+[[noreturn]] void FailModel(const std::string& model, const std::string& expected) {
   Fail("camera model " + Quoted(model) + " is not read, expected " + expected);
 }
 
-// `model` and `parameters`. Whether a distortion was left out.
-bool ReadParameters(const Json& json, const std::string& model, PinholeCamera* camera) {
-  const auto known = std::find_if(std::begin(kModels), std::end(kModels),
-                                  [&](const CameraModel& m) { return m.name == model; });
-  if (known == std::end(kModels)) {
-    FailModel(model, "pinhole, simple_pinhole, simple_radial, radial, opencv or full_opencv");
+// `model` and `parameters`.
+void ReadParameters(const Json& json, const std::string& model, Camera* camera) {
+  if (!ParseCameraModel(model, &camera->model)) {
+    FailModel(model, "one of " + CameraModelNames());
   }
-  const std::vector<double> p = Numbers(json["parameters"], "parameters", known->num_parameters);
-  const size_t y = known->two_focal_lengths ? 1 : 0;
-  if (!(p[0] > 0 && p[y] > 0)) {
-    Fail("parameters have a focal length that is not positive, expected a positive one");
-  }
-  camera->fx = p[0];
-  camera->fy = p[y];
-  camera->cx = p[y + 1];
-  camera->cy = p[y + 2];
-  return AnyNot0(p.data() + y + 3, p.data() + p.size());
+  const std::vector<double> p =
+      Numbers(json["parameters"], "parameters", NumCameraParameters(camera->model));
+  std::copy(p.begin(), p.end(), camera->parameters);
 }
 
-// `fx`, `fy`, `cx`, `cy` and `distortion`. Whether a distortion was left out.
-bool ReadOlderKeys(const Json& json, const std::string& model, PinholeCamera* camera) {
+// `fx`, `fy`, `cx`, `cy` and `distortion`.
+void ReadOlderKeys(const Json& json, const std::string& model, Camera* camera) {
   const auto known = std::find_if(
       std::begin(kOlderModels), std::end(kOlderModels),
       [&](const OlderModel& m) { return model.compare(0, m.begin.size(), m.begin) == 0; });
   if (known == std::end(kOlderModels)) {
-    FailModel(model, "pinhole, or one that begins with radial or brown");
+    FailModel(model, "pinhole, or one that begins with radial, brown or equidistant");
   }
   constexpr char kExpected[] = "'parameters', or 'fx', 'fy', 'cx' and 'cy'";
-  camera->fx = Positive(Member(json, "fx", kExpected), "fx");
-  camera->fy = Positive(Member(json, "fy", kExpected), "fy");
-  camera->cx = Number(Member(json, "cx", kExpected), "cx");
-  camera->cy = Number(Member(json, "cy", kExpected), "cy");
-  if (known->num_coefficients == 0 && !json.contains("distortion")) return false;
+  const double fx = Positive(Member(json, "fx", kExpected), "fx");
+  const double fy = Positive(Member(json, "fy", kExpected), "fy");
+  const double cx = Number(Member(json, "cx", kExpected), "cx");
+  const double cy = Number(Member(json, "cy", kExpected), "cy");
+  *camera = Camera::Pinhole(fx, fy, cx, cy);
+  if (known->num_coefficients == 0 && !json.contains("distortion")) return;
   const std::vector<double> d = Numbers(Member(json, "distortion", "its coefficients"),
                                         "distortion", known->num_coefficients);
-  return AnyNot0(d.data(), d.data() + d.size());
+  // A perspective lens without distortion is a pinhole, with which estimates are faster.
+  const bool is_pinhole = known->model != CameraModel::kOpencvFisheye &&
+                          std::all_of(d.begin(), d.end(), [](double x) { return x == 0; });
+  if (is_pinhole) return;
+  camera->model = known->model;
+  for (size_t k = 0; k < d.size(); ++k) camera->parameters[4 + known->places[k]] = d[k];
 }
 
 // Degrees and metres, both positive.
@@ -142,14 +131,19 @@ void ReadSigma(const Json& value, RigCamera* camera) {
   camera->position_sigma = Positive(value[1], kName);
 }
 
-RigCamera ReadCamera(const Json& json, bool* undistorted) {
+RigCamera ReadCamera(const Json& json) {
   RigCamera camera;
   const std::string model = Text(Member(json, "model", "the name of a camera model"), "model");
   if (json.contains("parameters") && json.contains("fx")) {
     Fail("'parameters' and 'fx', expected one of them");
   }
-  *undistorted = json.contains("parameters") ? ReadParameters(json, model, &camera.intrinsics)
-                                             : ReadOlderKeys(json, model, &camera.intrinsics);
+  if (json.contains("parameters")) {
+    ReadParameters(json, model, &camera.intrinsics);
+  } else {
+    ReadOlderKeys(json, model, &camera.intrinsics);
+  }
+  std::string what;
+  if (!camera.intrinsics.IsValid(&what)) Fail(what);
   for (const auto& [key, size] : {std::pair("width", &camera.intrinsics.width),
                                   std::pair("height", &camera.intrinsics.height)}) {
     const Json& value = Member(json, key, "the size of the image, pixels");
@@ -182,10 +176,8 @@ void ReadCameras(const Json& cameras, RigFile* file) {
       const std::string name =
           json.contains("name") ? Text(json["name"], "name") : std::to_string(k);
       if (json.contains("name")) where += " (" + name + ")";
-      bool undistorted = false;
-      file->rig.cameras.push_back(ReadCamera(json, &undistorted));
+      file->rig.cameras.push_back(ReadCamera(json));
       file->camera_names.push_back(name);
-      file->num_undistorted += undistorted ? 1 : 0;
     } catch (const std::exception& e) {
       Fail(where + ": " + JsonMessage(e));
     }

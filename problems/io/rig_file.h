@@ -7,11 +7,11 @@
 //
 // Required are `cameras`, at least one, and of each camera all but its name, its sigma and its time
 // offset, which are as the lines `camera_sigma` and `camera_time` of match files. q and s are
-// body_from_camera. `model` and `parameters` are COLMAP's names, in lower case, and its orders:
-// pinhole, simple_pinhole, simple_radial, radial, opencv, full_opencv. Files without `format` may
+// body_from_camera. `model` and `parameters` are those of core/camera.h. Files without `format` may
 // state a camera by the older keys instead of `parameters`: `fx`, `fy`, `cx`, `cy` and
 // `distortion`. Their model is `pinhole`, or begins with `radial` (k1 k2 k3) or `brown`
-// (k1 k2 p1 p2 k3). Other keys are not looked at.
+// (k1 k2 p1 p2 k3), which both are full_opencv, or with `equidistant` (k1 k2 k3 k4), which is
+// opencv_fisheye. Other keys are not looked at.
 #ifndef RIGEL_PROBLEMS_IO_RIG_FILE_H_
 #define RIGEL_PROBLEMS_IO_RIG_FILE_H_
 
@@ -32,13 +32,11 @@ struct RigFile {
   std::vector<std::string> camera_names;         // the number where a camera has no name
   std::optional<double> ground_m;                // how far the ground is below the body's origin
   std::optional<Eigen::Vector3d> down, forward;  // unit vectors of the body frame
-  // Cameras whose distortion was left out: the pinhole part of their models is used.
-  int num_undistorted = 0;
 };
 
-// False if the file cannot be read, is no such JSON, or has a model that is not one of these
-// (fisheye, omni). The message of one line names the file, the camera and what was expected. *rig
-// is then unchanged. The rig passes Rig::IsValid, and its image sizes are positive.
+// False if the file cannot be read, is no such JSON, or has a model that is not one of these. The
+// message of one line names the file, the camera and what was expected. *rig is then unchanged. The
+// rig passes Rig::IsValid, and its image sizes are positive.
 bool ReadRigFile(const std::string& path, RigFile* rig, std::string* error);
 
 // The same for text in memory; `name` stands for the path in messages.

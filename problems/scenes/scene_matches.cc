@@ -82,12 +82,10 @@ class MatchDrawer {
 
   void MakeOutlier(int k) {
     Match& match = pair_.matches[k];
-    const PinholeCamera& camera = pair_.rig.cameras[match.camera2].intrinsics;
-    const double u = random_.Uniform(0.0, camera.width);
-    const double v = random_.Uniform(0.0, camera.height);
-    match.pixel2 = {u, v};
+    match.pixel2 = DrawPixel(pair_.rig.cameras[match.camera2].intrinsics, &random_);
     pair_.columns.inlier[k] = 0;
-    pair_.columns.exact[k] = {match.pixel1.x(), match.pixel1.y(), u, v};
+    pair_.columns.exact[k] = {match.pixel1.x(), match.pixel1.y(), match.pixel2.x(),
+                              match.pixel2.y()};
   }
 
   // Moves the matches order_[begin], ..., order_[end - 1]. False if no car was found that all their
@@ -190,9 +188,21 @@ bool DrawSceneMatches(const SceneMatchOptions& options, SceneGeometry* geometry,
 
 bool Sees(const RigCamera& camera, const Eigen::Vector3d& X, Pixel* pixel) {
   const Eigen::Vector3d seen = camera.Q.transpose() * (X - camera.s);
-  if (!(seen.z() > kMinDepth)) return false;
-  *pixel = camera.intrinsics.Project(seen);
-  return camera.intrinsics.InImage(*pixel);
+  return seen.norm() > kMinDistance && Project(camera.intrinsics, seen, pixel) &&
+         camera.intrinsics.InImage(*pixel);
+}
+
+Pixel DrawPixel(const Camera& camera, Random* random) {
+  // The circle of a fisheye is at least some percent of its image.
+  constexpr int kMaxPixels = 100;
+  Pixel pixel;
+  for (int draw = 0; draw < kMaxPixels; ++draw) {
+    const double u = random->Uniform(0.0, camera.width);
+    const double v = random->Uniform(0.0, camera.height);
+    pixel = {u, v};
+    if (AlongRay(camera, pixel).allFinite()) break;
+  }
+  return pixel;
 }
 
 }  // namespace rigel

@@ -37,15 +37,18 @@ bool DrawSceneMatches(const SceneMatchOptions& options, SceneGeometry* geometry,
                       FramePair* pair, std::string* error);
 
 // Whether the camera sees the point X of the body frame: in its image, and not nearer than
-// kMinDepth. *pixel is then where.
+// kMinDistance. *pixel is then where.
 bool Sees(const RigCamera& camera, const Eigen::Vector3d& X, Pixel* pixel);
+
+// Uniform over the pixels of the image that have a ray.
+Pixel DrawPixel(const Camera& camera, Random* random);
 
 // Draws of a point before giving up: a motion that leaves fewer than one point in a thousand in
 // view is out of view.
 inline constexpr int kMaxDraws = 1000;
 
-// Metres in front of a camera: what is nearer is not seen.
-inline constexpr double kMinDepth = 0.1;
+// Metres from a camera: what is nearer is not seen.
+inline constexpr double kMinDistance = 0.1;
 
 }  // namespace rigel
 

@@ -9,6 +9,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/core/enum_names.h"
+#include "rigel/core/rays.h"
 #include "rigel/core/rig_centre.h"
 #include "rigel/problems/scenes/moving_car.h"
 #include "rigel/problems/scenes/scene_matches.h"
@@ -112,11 +113,8 @@ class StreetGeometry : public SceneGeometry {
   // A point that the match's camera1 sees, in the body frame of time 1.
   Eigen::Vector3d DrawPoint(Random* random, Match* match) const {
     const RigCamera& camera = rig_.cameras[match->camera1];
-    const double u = random->Uniform(0.0, camera.intrinsics.width);
-    const double v = random->Uniform(0.0, camera.intrinsics.height);
-    match->pixel1 = {u, v};
-    const Eigen::Vector3d ray =
-        (camera.Q * camera.intrinsics.Normalize(match->pixel1)).normalized();
+    match->pixel1 = DrawPixel(camera.intrinsics, random);
+    const Eigen::Vector3d ray = MakeRay(camera, match->pixel1).x;
     const double far = LogUniform(kNearestFar, kFarthestFar, random);
     double distance = std::min(far, DistanceOfSurface(camera.s, ray));
     if (random->Uniform() < kClutterShare && distance > kNearestClutter) {
@@ -242,7 +240,7 @@ bool StreetOptions::IsValid(std::string* error) const {
     return false;
   }
   for (int k = 0; k < rig.size(); ++k) {
-    const PinholeCamera& camera = rig.cameras[k].intrinsics;
+    const Camera& camera = rig.cameras[k].intrinsics;
     if (camera.width < 1 || camera.height < 1) {
       *error = "rig: camera " + std::to_string(k) + " has no image size";
       return false;

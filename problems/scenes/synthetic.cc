@@ -39,7 +39,7 @@ Rig MakeRing(int num_cameras) {
   for (int k = 0; k < num_cameras; ++k) {
     const double angle = 2.0 * kPi * k / num_cameras;
     RigCamera camera;
-    camera.intrinsics = {400.0, 400.0, 320.0, 240.0, 640, 480};
+    camera.intrinsics = Camera::Pinhole(400.0, 400.0, 320.0, 240.0, 640, 480);
     camera.Q = ExpSO3(angle * Eigen::Vector3d::UnitY());
     camera.s = camera.Q.col(2);
     rig.cameras.push_back(camera);
@@ -53,7 +53,7 @@ Rig MakeRig(int num_cameras, Random* random) {
   Rig rig;
   for (int k = 0; k < num_cameras; ++k) {
     RigCamera camera;
-    camera.intrinsics = {400.0, 400.0, 320.0, 240.0, 640, 480};
+    camera.intrinsics = Camera::Pinhole(400.0, 400.0, 320.0, 240.0, 640, 480);
     camera.Q = ExpSO3(kMountingAngle * random->NormalVector3());
     camera.s = positions[k] + kMountingShift * random->NormalVector3();
     rig.cameras.push_back(camera);
@@ -124,7 +124,7 @@ class BoxGeometry : public SceneGeometry {
       const double depth = random->Uniform(kNearestPoint, kFarthestPoint);
       match->pixel1 = {u, v};
       const Eigen::Vector3d X =
-          camera1.Q * (depth * camera1.intrinsics.Normalize(match->pixel1)) + camera1.s;
+          camera1.Q * (depth * AlongRay(camera1.intrinsics, match->pixel1)) + camera1.s;
       if (Sees(rig_.cameras[match->camera2], truth_ * X, &match->pixel2)) return true;
     }
     return false;

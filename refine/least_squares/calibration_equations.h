@@ -1,5 +1,6 @@
 // How errors of the calibration (fundamental_derivatives.h) change the normal equations of the
-// motion. Both change the Sampson errors through F alone. So the sums of SumSampson() serve both.
+// motion. Of pinholes both change the Sampson errors through F alone. So the sums of SumSampson()
+// serve both. A stated error of the focal lengths of another lens changes them row by row.
 #ifndef RIGEL_REFINE_LEAST_SQUARES_CALIBRATION_EQUATIONS_H_
 #define RIGEL_REFINE_LEAST_SQUARES_CALIBRATION_EQUATIONS_H_
 

@@ -33,10 +33,12 @@ EpipolarResiduals::EpipolarResiduals(const GroupedMatches& matches, ResidualKind
   p2_.resize(n);
   for (size_t g = 0; g < matches.groups().size(); ++g) {
     const MatchGroup& group = matches.groups()[g];
-    const PinholeCamera& c1 = matches.rig().cameras[group.camera1].intrinsics;
-    const PinholeCamera& c2 = matches.rig().cameras[group.camera2].intrinsics;
-    weight_.push_back(kind == ResidualKind::kAngular ? 0.25 * (c1.fx + c1.fy + c2.fx + c2.fy)
-                                                     : 1.0);
+    const Camera& c1 = matches.rig().cameras[group.camera1].intrinsics;
+    const Camera& c2 = matches.rig().cameras[group.camera2].intrinsics;
+    const Pixel scale1 = c1.PixelsPerRadian(), scale2 = c2.PixelsPerRadian();
+    weight_.push_back(kind == ResidualKind::kAngular
+                          ? 0.25 * (scale1.x() + scale1.y() + scale2.x() + scale2.y())
+                          : 1.0);
     for (int k = group.begin; k < group.begin + group.size; ++k) {
       const Match& m = matches.matches()[k];
       group_of_[k] = static_cast<int>(g);
@@ -44,8 +46,8 @@ EpipolarResiduals::EpipolarResiduals(const GroupedMatches& matches, ResidualKind
         p1_[k] = matches.Point1(k);
         p2_[k] = matches.Point2(k);
       } else {
-        p1_[k].p = c1.Normalize(m.pixel1).normalized();
-        p2_[k].p = c2.Normalize(m.pixel2).normalized();
+        p1_[k].p = AlongRay(c1, m.pixel1).normalized();
+        p2_[k].p = AlongRay(c2, m.pixel2).normalized();
       }
     }
   }

@@ -70,16 +70,24 @@ ByCalibrationMatrix FundamentalByCalibration(const GroupedMatches& matches, cons
   ByCalibrationMatrix D = ByCalibrationMatrix::Zero();
   D.leftCols<6>() = by_places.leftCols<6>();
   D.middleCols<6>(kCameraErrors) = by_places.rightCols<6>();
-  if (matches.Rows(group).general != nullptr) return D;
   const RowMajor3d F = matches.Fundamental(group, pose);
+  const auto is_pinhole = [&matches](int camera) {
+    return matches.rig().cameras[camera].intrinsics.IsPinhole();
+  };
+  const bool pinhole1 = is_pinhole(group.camera1), pinhole2 = is_pinhole(group.camera2);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       // U = diag(1 / fx, 1 / fy, 1).
-      D(3 * i + j, 6) = j < 2 ? -F(i, j) : 0.0;
-      D(3 * i + j, kCameraErrors + 6) = i < 2 ? -F(i, j) : 0.0;
+      if (pinhole1 && j < 2) D(3 * i + j, 6) = -F(i, j);
+      if (pinhole2 && i < 2) D(3 * i + j, kCameraErrors + 6) = -F(i, j);
     }
   }
   return D;
+}
+
+Eigen::Vector3d FocalShift(const RigCamera& camera, const Pixel& pixel) {
+  const Camera& c = camera.intrinsics;
+  return -(RowPointOf(camera, pixel).J * (pixel - Pixel(c.cx(), c.cy())));
 }
 
 }  // namespace rigel

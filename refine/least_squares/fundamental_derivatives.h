@@ -32,10 +32,13 @@ ByMotionMatrix FundamentalByMotion(const GroupedMatches& matches, const MatchGro
                                    const Pose& pose, bool of_rays);
 
 // By the errors of camera1, then those of camera2. They add up if that is the same camera. The
-// focal lengths are those of pinholes: of other cameras they do not act through F, and count as
-// exact.
+// focal lengths are those of pinholes: of other lenses they do not act through F (FocalShift()).
 ByCalibrationMatrix FundamentalByCalibration(const GroupedMatches& matches, const MatchGroup& group,
                                              const Pose& pose);
+
+// How the point p of a row changes if the focal lengths of its camera, which is no pinhole, grow by
+// a fraction: all pixels are nearer to the centre than they should be.
+Eigen::Vector3d FocalShift(const RigCamera& camera, const Pixel& pixel);
 
 }  // namespace rigel
 

@@ -1,9 +1,10 @@
 // Two-view bundle adjustment: the reprojection errors of one match in both images.
 //
-// A point has three parameters: the error (du, dv) of its image in view 1, pixels, and its inverse
-// depth rho = 1/z in camera 1, 1/metres. With rho alone the ray of view 1 would be exact, and the
-// noise of view 1 would count as an error in view 2. With all three the minimum is the
-// maximum-likelihood motion. rho = 0, a point at infinity, is no special case.
+// A point has three parameters: the error (du, dv) of its image in view 1, pixels, and rho, the
+// inverse of its distance from camera 1 along AlongRay(), 1/metres: of a pinhole 1/z. With rho
+// alone the ray of view 1 would be exact, and the noise of view 1 would count as an error in
+// view 2. With all three the minimum is the maximum-likelihood motion. rho = 0, a point at
+// infinity, is no special case.
 #ifndef RIGEL_REFINE_LEAST_SQUARES_REPROJECTION_COST_H_
 #define RIGEL_REFINE_LEAST_SQUARES_REPROJECTION_COST_H_
 
@@ -25,7 +26,8 @@ class ReprojectionCost : public ceres::CostFunction {
   // Parameter blocks: the motion (`size` numbers, whose pose and basis the caller keeps up to date
   // in `pose` and `basis`), and the point. Residuals, pixels times `weight`: (du, dv), projection -
   // pixel2. All must outlive this object. The match's cameras must be in the rig. Evaluate()
-  // returns false where the point has no image, and while `*stopped` is true (may be null).
+  // returns false where the point has no image or no ray, and while `*stopped` is true (may be
+  // null).
   ReprojectionCost(const Rig& rig, const Match& match, const Pose& pose, const MotionBasis& basis,
                    int size, double weight, const bool* stopped = nullptr);
 

@@ -171,8 +171,8 @@ namespace {
 void AppendSquaredParallaxPx(const GroupedMatches& matches, const MatchGroup& group,
                              const std::vector<char>& mask, const Pose& pose, double factor,
                              std::vector<double>* squares) {
-  const PinholeCamera& c = matches.rig().cameras[group.camera2].intrinsics;
-  const double pixels = factor * 0.5 * (c.fx + c.fy);
+  const Pixel scale = matches.rig().cameras[group.camera2].intrinsics.PixelsPerRadian();
+  const double pixels = factor * 0.5 * (scale.x() + scale.y());
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = pose.R;
   size_t end = squares->size();
   squares->resize(end + group.size);

@@ -15,12 +15,16 @@ bool ExceedsChance(const GroupedMatches& matches, const Pose& pose, int num_inli
   const int n = num_matches - kFree;
   const int k = num_inliers - kFree;
   if (n <= 0 || k <= 0) return false;
+  // An epipolar plane is no line in the image of a fisheye: an equidistant one of 180 degrees shows
+  // half of a great circle, of up to pi / 2 of the diameter. Its image circle has pi / 4 of the
+  // square about it. So the band is up to twice as large a share of the image.
+  constexpr double kBend = 2.0;
   double q = 0.0;
   for (const MatchGroup& group : matches.groups()) {
-    const PinholeCamera& c = matches.rig().cameras[group.camera2].intrinsics;
+    const Camera& c = matches.rig().cameras[group.camera2].intrinsics;
     // If matches lie beyond the stated image size, the size is taken from them.
-    double width = c.width > 0 ? c.width : std::max(2.0 * std::abs(c.cx), c.fx);
-    double height = c.height > 0 ? c.height : std::max(2.0 * std::abs(c.cy), c.fy);
+    double width = c.width > 0 ? c.width : std::max(2.0 * std::abs(c.cx()), c.fx());
+    double height = c.height > 0 ? c.height : std::max(2.0 * std::abs(c.cy()), c.fy());
     Eigen::AlignedBox2d extent;
     for (int m = group.begin; m < group.begin + group.size; ++m) {
       extent.extend(matches.matches()[m].pixel2);
@@ -28,7 +32,8 @@ bool ExceedsChance(const GroupedMatches& matches, const Pose& pose, int num_inli
     width = std::max(width, extent.sizes().x());
     height = std::max(height, extent.sizes().y());
     const double band = 2.0 * threshold_px * std::hypot(width, height);
-    q += std::min(1.0, band / (width * height)) * group.size / matches.size();
+    const double bend = c.IsPinhole() ? 1.0 : kBend;
+    q += std::min(1.0, bend * band / (width * height)) * group.size / matches.size();
   }
   constexpr double kNoBound = std::numeric_limits<double>::infinity();
   constexpr double kNear = 2.0, kFar = 5.0;  // thresholds

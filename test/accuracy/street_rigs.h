@@ -13,7 +13,7 @@ namespace rigel {
 // A camera at s (metres) of a body with x forward and z up, turned to the left by `yaw_deg`.
 inline RigCamera CarCamera(const Eigen::Vector3d& s, double yaw_deg, double focal) {
   RigCamera camera;
-  camera.intrinsics = {focal, focal, 800.0, 450.0, 1600, 900};
+  camera.intrinsics = Camera::Pinhole(focal, focal, 800.0, 450.0, 1600, 900);
   Eigen::Matrix3d ahead;  // the axes of the camera in the body
   ahead << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   camera.Q = ExpSO3(DegToRad(yaw_deg) * Eigen::Vector3d::UnitZ()) * ahead;
@@ -53,7 +53,7 @@ inline StreetOptions CameraFrameStereo() {
   street.ground_m = 1.65;
   for (const double x : {0.0, 0.54}) {
     RigCamera camera;
-    camera.intrinsics = {718.0, 718.0, 607.0, 185.0, 1241, 376};
+    camera.intrinsics = Camera::Pinhole(718.0, 718.0, 607.0, 185.0, 1241, 376);
     camera.s.x() = x;
     street.rig.cameras.push_back(camera);
   }

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "rigel/core/camera_model.h"
+#include "rigel/core/camera.h"
 #include "rigel/core/random.h"
 
 namespace rigel {

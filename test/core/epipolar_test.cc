@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "rigel/core/random.h"
+#include "rigel/test/core/pinhole.h"
 
 namespace rigel {
 namespace {
@@ -22,7 +23,7 @@ Rig MakeRig(Random* random) {
   const double fy[] = {430.0, 700.0, 260.0};
   for (int k = 0; k < 3; ++k) {
     RigCamera camera;
-    camera.intrinsics = {fx[k], fy[k], 300.0 + 20 * k, 260.0 - 15 * k, 640, 480};
+    camera.intrinsics = Camera::Pinhole(fx[k], fy[k], 300.0 + 20 * k, 260.0 - 15 * k, 640, 480);
     camera.Q = ExpSO3(0.3 * random->NormalVector3());
     camera.s = random->NormalVector3();
     rig.cameras.push_back(camera);
@@ -63,10 +64,10 @@ Match TrueMatch(const Rig& rig, const Pose& pose, Random* random) {
     const RigCamera& c2 = rig.cameras[match.camera2];
     match.pixel1 = RandomPixel(random);
     const Vector3d X1 =
-        c1.Q * (random->Uniform(4.0, 20.0) * c1.intrinsics.Normalize(match.pixel1)) + c1.s;
+        c1.Q * (random->Uniform(4.0, 20.0) * AlongRay(c1.intrinsics, match.pixel1)) + c1.s;
     const Vector3d X2 = c2.Q.transpose() * (pose * X1 - c2.s);
     if (X2.z() < 1.0) continue;
-    match.pixel2 = c2.intrinsics.Project(X2);
+    match.pixel2 = ProjectPinhole(c2.intrinsics, X2);
     break;
   }
   return match;
@@ -94,8 +95,8 @@ Problem MakeProblem(uint64_t seed, bool true_match = false) {
 double PixelConstraint(const Problem& p, const Vector4d& pixels) {
   const RigCamera& ci = p.rig.cameras[p.match.camera1];
   const RigCamera& cj = p.rig.cameras[p.match.camera2];
-  const Vector3d xi = p.pose.R * ci.Q * ci.intrinsics.Normalize(pixels.head<2>());
-  const Vector3d xj = cj.Q * cj.intrinsics.Normalize(pixels.tail<2>());
+  const Vector3d xi = p.pose.R * ci.Q * AlongRay(ci.intrinsics, pixels.head<2>());
+  const Vector3d xj = cj.Q * AlongRay(cj.intrinsics, pixels.tail<2>());
   return xj.dot((p.pose.R * ci.s + p.pose.t - cj.s).cross(xi));
 }
 
@@ -133,8 +134,8 @@ TEST(Epipolar, ThreeFormsOfTheConstraintAgree) {
     const Problem p = MakeProblem(seed);
     const RigCamera& ci = p.rig.cameras[p.match.camera1];
     const RigCamera& cj = p.rig.cameras[p.match.camera2];
-    const Vector3d ui = ci.intrinsics.Normalize(p.match.pixel1);
-    const Vector3d uj = cj.intrinsics.Normalize(p.match.pixel2);
+    const Vector3d ui = AlongRay(ci.intrinsics, p.match.pixel1);
+    const Vector3d uj = AlongRay(cj.intrinsics, p.match.pixel2);
     const double triple = GecTripleProduct(p.pose, p.rays);
     EXPECT_NEAR(GecPluecker(p.pose, p.rays), triple, 1e-13) << seed;
     EXPECT_NEAR(uj.dot(EssentialMatrix(p.pose, ci, cj) * ui) / (ui.norm() * uj.norm()), triple,
@@ -191,15 +192,14 @@ TEST(Epipolar, EssentialMatrixFromDepthsIsTheEssentialMatrix) {
   }
 }
 
-TEST(Epipolar, CentredFundamentalActsOnCentredPixels) {
+TEST(Epipolar, TheFundamentalActsOnCentredPixels) {
   for (int seed = 0; seed < 200; ++seed) {
     const Problem p = MakeProblem(seed);
     const RigCamera& ci = p.rig.cameras[p.match.camera1];
     const RigCamera& cj = p.rig.cameras[p.match.camera2];
     const Matrix3d F =
-        CentredFundamental(EssentialMatrix(p.pose, ci, cj), ci.intrinsics, cj.intrinsics);
-    EXPECT_NEAR(CentredPixel(cj.intrinsics, p.match.pixel2)
-                    .dot(F * CentredPixel(ci.intrinsics, p.match.pixel1)),
+        Unprojection(cj).transpose() * EssentialMatrix(p.pose, ci, cj) * Unprojection(ci);
+    EXPECT_NEAR(RowPointOf(cj, p.match.pixel2).p.dot(F * RowPointOf(ci, p.match.pixel1).p),
                 PixelConstraint(p, Pixels(p.match)), 1e-13);
   }
 }

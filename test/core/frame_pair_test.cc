@@ -28,7 +28,7 @@ TEST(FramePair, AcceptsAValidPair) {
 
 TEST(FramePair, RejectsAnInvalidRig) {
   FramePair pair = MakePair();
-  pair.rig.cameras[1].intrinsics.fx = -1.0;
+  pair.rig.cameras[1].intrinsics.parameters[0] = -1.0;
   std::string error;
   EXPECT_FALSE(pair.IsValid(&error));
   EXPECT_THAT(error, HasSubstr("camera 1"));

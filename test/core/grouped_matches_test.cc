@@ -12,6 +12,7 @@
 #include "rigel/core/epipolar.h"
 #include "rigel/core/random.h"
 #include "rigel/problems/scenes/synthetic.h"
+#include "rigel/test/core/lens_rig.h"
 
 namespace rigel {
 namespace {
@@ -32,13 +33,13 @@ FramePair MakePair(int num_matches, int seed) {
   std::string error;
   EXPECT_TRUE(MakeScenePair(options, seed, &pair, &error)) << error;
   for (int k = 0; k < 3; ++k) {
-    PinholeCamera& camera = pair.rig.cameras[k].intrinsics;
-    const PinholeCamera old = camera;
-    camera = {300.0 + 100 * k, 350.0 + 80 * k, 300.0 + 10 * k, 250.0, 800, 600};
+    Camera& camera = pair.rig.cameras[k].intrinsics;
+    const Camera old = camera;
+    camera = Camera::Pinhole(300.0 + 100 * k, 350.0 + 80 * k, 300.0 + 10 * k, 250.0, 800, 600);
     // The same rays through the new camera.
     for (Match& match : pair.matches) {
-      if (match.camera1 == k) match.pixel1 = camera.Project(old.Normalize(match.pixel1));
-      if (match.camera2 == k) match.pixel2 = camera.Project(old.Normalize(match.pixel2));
+      if (match.camera1 == k) Project(camera, AlongRay(old, match.pixel1), &match.pixel1);
+      if (match.camera2 == k) Project(camera, AlongRay(old, match.pixel2), &match.pixel2);
     }
   }
   return pair;
@@ -193,10 +194,10 @@ TEST(GroupedMatches, SquaredErrorsAreThoseOfCoreInGroupedOrder) {
 bool IsInlierInFront(const FramePair& pair, const Pose& pose, const Match& match) {
   const double r = SampsonError(pose, pair.rig, match);
   if (!(r * r < kThreshold * kThreshold)) return false;
-  const PinholeCamera& c1 = pair.rig.cameras[match.camera1].intrinsics;
-  const PinholeCamera& c2 = pair.rig.cameras[match.camera2].intrinsics;
+  const Camera& c1 = pair.rig.cameras[match.camera1].intrinsics;
+  const Camera& c2 = pair.rig.cameras[match.camera2].intrinsics;
   const double min_sin_parallax =
-      2.0 * kThreshold / std::min(std::min(c1.fx, c1.fy), std::min(c2.fx, c2.fy));
+      2.0 * kThreshold / std::min(std::min(c1.fx(), c1.fy()), std::min(c2.fx(), c2.fy()));
   const Cheirality cheirality =
       TestCheirality(pose, MakeRayPair(pair.rig, match), min_sin_parallax);
   return cheirality == Cheirality::kInFront || cheirality == Cheirality::kUndecided;
@@ -348,6 +349,80 @@ TEST(GroupedMatches, SubsetsAreTheSameAsOfTheMatchesTheyHold) {
       EXPECT_GT(num_first, 5);
     }
   }
+}
+
+// Also pinholes, in a rig with other lenses.
+TEST(GroupedMatches, RowsOfAnyLensHaveTheSampsonErrorOfTheirRays) {
+  Random random(12);
+  for (int number = 0; number < 9; ++number) {
+    const LensRig lenses = MakeLensRig(number, &random);
+    const GroupedMatches grouped(lenses.rig, UnrelatedLensMatches(lenses, 45, &random));
+    ASSERT_EQ(grouped.size(), 45);
+    Pose pose;
+    pose.R = ExpSO3(random.NormalVector3());
+    pose.t = random.NormalVector3();
+    std::vector<double> errors;
+    grouped.SquaredErrors(pose, &errors);
+    for (int k = 0; k < grouped.size(); ++k) {
+      const Match& m = grouped.matches()[k];
+      const RigCamera& i = lenses.rig.cameras[m.camera1];
+      const RigCamera& j = lenses.rig.cameras[m.camera2];
+      const double r = SampsonError(pose, lenses.rig, m);
+      EXPECT_NEAR(errors[k], r * r, 1e-9 * r * r);
+      // C over its gradient by the four pixels, by differences of the rays.
+      const auto C = [&](const Eigen::Vector4d& p) {
+        const Ray ray1 = MakeRay(i, {p(0), p(1)}), ray2 = MakeRay(j, {p(2), p(3)});
+        return GecTripleProduct(pose, {ray1, ray2});
+      };
+      const Eigen::Vector4d p(m.pixel1.x(), m.pixel1.y(), m.pixel2.x(), m.pixel2.y());
+      Eigen::Vector4d gradient;
+      for (int c = 0; c < 4; ++c) {
+        const Eigen::Vector4d step = 1e-3 * Eigen::Vector4d::Unit(c);
+        gradient(c) = (C(p + step) - C(p - step)) / 2e-3;
+      }
+      // The length of a pinhole's (x, y, 1) depends on the pixel: a term of C, which counts where C
+      // is not small.
+      if (i.intrinsics.IsPinhole() || j.intrinsics.IsPinhole()) continue;
+      EXPECT_NEAR(std::abs(r), std::abs(C(p)) / gradient.norm(), 1e-5 * std::abs(r)) << number;
+    }
+  }
+}
+
+TEST(GroupedMatches, MatchesWithoutARayAreLeftOut) {
+  Random random(13);
+  LensRig lenses = MakeLensRig(0, &random);
+  lenses.cases[1].camera = {CameraModel::kOpencvFisheye, {300, 300, 320, 240}, 640, 480};
+  lenses.rig.cameras[1].intrinsics = lenses.cases[1].camera;
+  std::vector<Match> matches = UnrelatedLensMatches(lenses, 36, &random);
+  const GroupedMatches all(lenses.rig, matches);
+  EXPECT_EQ(all.size(), 36);
+  const Pixel nowhere(320 + 300 * 3.2, 240);  // beyond 180 degrees
+  int num_lost = 0;
+  for (int k = 0; k < 36; k += 2) {
+    if (matches[k].camera2 == 1) matches[k].pixel2 = nowhere;
+    if (matches[k].camera1 == 1) matches[k].pixel1 = nowhere;
+    num_lost += matches[k].camera1 == 1 || matches[k].camera2 == 1;
+  }
+  ASSERT_GT(num_lost, 0);
+  const GroupedMatches grouped(lenses.rig, matches);
+  EXPECT_EQ(grouped.size(), 36 - num_lost);
+  EXPECT_EQ(grouped.num_given(), 36);
+  int in_groups = 0;
+  for (const MatchGroup& group : grouped.groups()) in_groups += group.size;
+  EXPECT_EQ(in_groups, grouped.size());
+  for (int k = 0; k < grouped.size(); ++k) {
+    const Match& m = matches[grouped.original(k)];
+    EXPECT_EQ(m.pixel1, grouped.matches()[k].pixel1);
+    EXPECT_TRUE(grouped.Point1(k).p.allFinite() && grouped.Point2(k).p.allFinite());
+    EXPECT_TRUE(std::isfinite(SampsonError(Pose(), lenses.rig, m)) || m.IsIntra());
+  }
+  Match lost;
+  lost.camera1 = lost.camera2 = 1;
+  lost.pixel1 = nowhere;
+  lost.pixel2 = {320, 240};
+  EXPECT_EQ(SampsonError(PoseNear(Pose(), 1), lenses.rig, lost), kInf);
+  EXPECT_TRUE(MakeRayPair(lenses.rig, lost).ray1.x.array().isNaN().all());
+  EXPECT_EQ(GroupedMatches(lenses.rig, {lost}).size(), 0);
 }
 
 TEST(GroupedMatches, NoMatches) {

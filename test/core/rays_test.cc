@@ -4,6 +4,7 @@
 
 #include "rigel/core/pose.h"
 #include "rigel/core/random.h"
+#include "rigel/test/core/pinhole.h"
 
 namespace rigel {
 namespace {
@@ -46,7 +47,7 @@ TEST(Rays, MakeRayPairPassesThroughThePointInBothFrames) {
     Rig rig;
     for (int k = 0; k < 3; ++k) {
       RigCamera camera;
-      camera.intrinsics = {300.0 + 100.0 * k, 450.0, 320.0, 200.0 + k, 640, 480};
+      camera.intrinsics = Camera::Pinhole(300.0 + 100.0 * k, 450.0, 320.0, 200.0 + k, 640, 480);
       camera.Q = ExpSO3(random.NormalVector3());
       camera.s = random.NormalVector3();
       rig.cameras.push_back(camera);
@@ -58,8 +59,8 @@ TEST(Rays, MakeRayPairPassesThroughThePointInBothFrames) {
     Match match;
     match.camera1 = 2;
     match.camera2 = 0;
-    match.pixel1 = rig.cameras[2].intrinsics.Project(point1);
-    match.pixel2 = rig.cameras[0].intrinsics.Project(point2);
+    match.pixel1 = ProjectPinhole(rig.cameras[2].intrinsics, point1);
+    match.pixel2 = ProjectPinhole(rig.cameras[0].intrinsics, point2);
     const RayPair rays = MakeRayPair(rig, match);
     const Vector3d body1 = rig.cameras[2].Q * point1 + rig.cameras[2].s;
     const Vector3d body2 = rig.cameras[0].Q * point2 + rig.cameras[0].s;

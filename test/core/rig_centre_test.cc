@@ -65,14 +65,15 @@ TEST(RigCentre, BodyLengthKeepsTheDirectionOfThePoint) {
 TEST(PixelUnit, IsAShareOfShortFocalLengths) {
   Rig rig;
   rig.cameras.resize(2);
-  for (RigCamera& camera : rig.cameras) camera.intrinsics = {700, 710, 0, 0, 640, 480};
+  for (RigCamera& camera : rig.cameras)
+    camera.intrinsics = Camera::Pinhole(700, 710, 0, 0, 640, 480);
   EXPECT_EQ(PixelUnit(rig), 1.0);
   EXPECT_EQ(DefaultThresholdPx(rig), 1.5);
   EXPECT_EQ(ThresholdPx(kAutoThresholdPx, rig), 1.5);
   EXPECT_EQ(ThresholdPx(0.7, rig), 0.7);
-  rig.cameras[1].intrinsics = {1, 1, 0, 0, 2, 1};
+  rig.cameras[1].intrinsics = Camera::Pinhole(1, 1, 0, 0, 2, 1);
   EXPECT_DOUBLE_EQ(DefaultThresholdPx(rig), 1.0 / 300.0);
-  rig.cameras[0].intrinsics.fx = 1e-300;
+  rig.cameras[0].intrinsics.parameters[0] = 1e-300;
   EXPECT_EQ(DefaultThresholdPx(rig), kMinThresholdPx);
 }
 

@@ -21,7 +21,7 @@ Rig MakeRig() {
   Rig rig;
   for (int k = 0; k < 3; ++k) {
     RigCamera camera;
-    camera.intrinsics = {400.0, 410.0, 320.0, 240.0, 640, 480};
+    camera.intrinsics = Camera::Pinhole(400.0, 410.0, 320.0, 240.0, 640, 480);
     camera.Q = ExpSO3(Eigen::Vector3d(0.1, 0.2 * k, -0.3));
     camera.s = Eigen::Vector3d(0.5 * k, 0.0, 1.0);
     rig.cameras.push_back(camera);
@@ -50,15 +50,15 @@ TEST(Rig, NamesTheCameraAndWhatIsWrong) {
     std::function<void(RigCamera*)> damage;
   };
   const Case cases[] = {
-      {"focal", [](RigCamera* c) { c->intrinsics.fx = 0.0; }},
-      {"focal", [](RigCamera* c) { c->intrinsics.fx = -400.0; }},
-      {"focal", [](RigCamera* c) { c->intrinsics.fy = 0.0; }},
-      {"focal", [](RigCamera* c) { c->intrinsics.fx = kNan; }},
-      {"focal", [](RigCamera* c) { c->intrinsics.fy = kNan; }},
-      {"focal", [](RigCamera* c) { c->intrinsics.fx = kInf; }},
-      {"focal", [](RigCamera* c) { c->intrinsics.fy = kInf; }},
-      {"principal point", [](RigCamera* c) { c->intrinsics.cx = kNan; }},
-      {"principal point", [](RigCamera* c) { c->intrinsics.cy = kInf; }},
+      {"pinhole: fx is", [](RigCamera* c) { c->intrinsics.parameters[0] = 0.0; }},
+      {"pinhole: fx is", [](RigCamera* c) { c->intrinsics.parameters[0] = -400.0; }},
+      {"pinhole: fy is", [](RigCamera* c) { c->intrinsics.parameters[1] = 0.0; }},
+      {"pinhole: fx is", [](RigCamera* c) { c->intrinsics.parameters[0] = kNan; }},
+      {"pinhole: fy is", [](RigCamera* c) { c->intrinsics.parameters[1] = kNan; }},
+      {"pinhole: fx is", [](RigCamera* c) { c->intrinsics.parameters[0] = kInf; }},
+      {"pinhole: fy is", [](RigCamera* c) { c->intrinsics.parameters[1] = kInf; }},
+      {"pinhole: cx is", [](RigCamera* c) { c->intrinsics.parameters[2] = kNan; }},
+      {"pinhole: cy is", [](RigCamera* c) { c->intrinsics.parameters[3] = kInf; }},
       {"position", [](RigCamera* c) { c->s.y() = kNan; }},
       {"sigmas", [](RigCamera* c) { c->rotation_sigma = -1.0; }},
       {"sigmas", [](RigCamera* c) { c->position_sigma = kNan; }},

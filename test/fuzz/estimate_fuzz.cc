@@ -35,10 +35,11 @@ rigel::Rig MakeRig(Bytes* bytes) {
   const int size = bytes->Choice(6);
   for (int k = 0; k < size; ++k) {
     rigel::RigCamera camera;
-    camera.intrinsics.fx = bytes->Double(1, 1000);
-    camera.intrinsics.fy = bytes->Chance(200) ? camera.intrinsics.fx : bytes->Double(1, 1000);
-    camera.intrinsics.cx = bytes->Double(0, 640);
-    camera.intrinsics.cy = bytes->Double(0, 480);
+    camera.intrinsics.parameters[0] = bytes->Double(1, 1000);
+    camera.intrinsics.parameters[1] =
+        bytes->Chance(200) ? camera.intrinsics.fx() : bytes->Double(1, 1000);
+    camera.intrinsics.parameters[2] = bytes->Double(0, 640);
+    camera.intrinsics.parameters[3] = bytes->Double(0, 480);
     camera.Q = Rotation(bytes);
     // Far origins too: UTM coordinates.
     const double reach = bytes->Chance(16) ? 5e6 : 1.0;
@@ -90,10 +91,11 @@ std::vector<rigel::Match> MakeMatches(const rigel::Rig& rig, const rigel::Pose& 
     if (kind < 180 && rig.size() > 0) {
       const rigel::RigCamera& from = rig.cameras[match.camera1];
       const rigel::RigCamera& to = rig.cameras[match.camera2];
-      const Eigen::Vector3d ray = from.Q * from.intrinsics.Normalize(match.pixel1);
+      const Eigen::Vector3d ray = from.Q * AlongRay(from.intrinsics, match.pixel1);
       const Eigen::Vector3d X = from.s + (near + depth * kind / 180.0) * ray;
-      match.pixel2 = to.intrinsics.Project(to.Q.transpose() * (motion * X - to.s)) +
-                     noise * Eigen::Vector2d{bytes->Uniform(-1, 1), bytes->Uniform(-1, 1)};
+      if (Project(to.intrinsics, to.Q.transpose() * (motion * X - to.s), &match.pixel2)) {
+        match.pixel2 += noise * Eigen::Vector2d{bytes->Uniform(-1, 1), bytes->Uniform(-1, 1)};
+      }
     } else if (kind < 190 && !matches.empty()) {
       match = matches[bytes->Choice(static_cast<int>(matches.size()))];
     } else if (kind < 200) {
@@ -185,6 +187,15 @@ void AddLaterOptions(Bytes* bytes, Options* options, rigel::MotionPrior* prior) 
   options->estimate.refine.typical_length = options->refine.typical_length;
 }
 
+// Some become fisheyes. Pixels may then lie outside the circle of the lens.
+void AddLenses(Bytes* bytes, rigel::Rig* rig) {
+  for (rigel::RigCamera& camera : rig->cameras) {
+    if (bytes->Chance(192)) continue;
+    camera.intrinsics.model = rigel::CameraModel::kOpencvFisheye;
+    for (int i = 4; i < 8; ++i) camera.intrinsics.parameters[i] = bytes->Double(-0.1, 0.1);
+  }
+}
+
 void RequireSound(const rigel::RefineSummary& summary, size_t num_matches) {
   Require(!summary.message.empty(), "the refinement says what it did");
   summary.BriefReport();
@@ -209,6 +220,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const rigel::Pose motion = MakeMotion(&bytes);
   pair.prior = MakePrior(&bytes);
   AddLaterOptions(&tail, &options, &pair.prior);
+  AddLenses(&tail, &pair.rig);
   if (bytes.Chance(40)) pair.noise_px = bytes.Double(0, 2);
   if (bytes.Chance(40)) pair.time1 = bytes.AnyDouble();
   if (bytes.Chance(40)) pair.time2 = bytes.AnyDouble();

@@ -24,6 +24,7 @@
 #include "rigel/core/rig.h"
 #include "rigel/minimal/solvers/prepared_matches.h"
 #include "rigel/minimal/solvers/solutions.h"
+#include "rigel/test/core/pinhole.h"
 
 namespace rigel {
 
@@ -70,13 +71,13 @@ inline bool MakeMatch(const Rig& rig, const Pose& truth, int camera1, int camera
                       const Eigen::Vector2d& pixel1, double depth, Match* match) {
   const RigCamera& c1 = rig.cameras[camera1];
   const RigCamera& c2 = rig.cameras[camera2];
-  const Eigen::Vector3d X1 = c1.Q * (depth * c1.intrinsics.Normalize(pixel1)) + c1.s;
+  const Eigen::Vector3d X1 = c1.Q * (depth * AlongRay(c1.intrinsics, pixel1)) + c1.s;
   const Eigen::Vector3d X2 = c2.Q.transpose() * (truth * X1 - c2.s);
   if (!(X2.z() > 0.1)) return false;
   match->camera1 = camera1;
   match->pixel1 = pixel1;
   match->camera2 = camera2;
-  match->pixel2 = c2.intrinsics.Project(X2);
+  match->pixel2 = ProjectPinhole(c2.intrinsics, X2);
   return true;
 }
 
@@ -85,7 +86,7 @@ inline RandomProblem MakeRandomProblem(uint64_t seed, const ProblemOptions& opti
   RandomProblem problem;
   for (int k = 0; k < options.num_cameras; ++k) {
     RigCamera camera;
-    camera.intrinsics = {400.0, 400.0, 320.0, 240.0, 640, 480};
+    camera.intrinsics = Camera::Pinhole(400.0, 400.0, 320.0, 240.0, 640, 480);
     camera.Q = ExpSO3(0.1 * rng.NormalVector3());
     const Eigen::Vector3d centre =
         k < 2 ? Eigen::Vector3d(k - 0.5, 0.0, 0.0) : Eigen::Vector3d(0.0, 0.4, 0.3);

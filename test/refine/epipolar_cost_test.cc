@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "rigel/core/epipolar.h"
+#include "rigel/test/core/lens_rig.h"
 #include "rigel/test/core/random_vector.h"
 #include "rigel/test/refine/jet_geometry.h"
 #include "rigel/test/refine/refine_scene.h"
@@ -191,13 +192,13 @@ struct Twin {
     }
     const Vector3<T> b = R * s_i + t - s_j;
     const Matrix3<T> E = Q_j.transpose() * Cross<T>(b) * R * Q_i;
-    const PinholeCamera& ci = i.intrinsics;
-    const PinholeCamera& cj = j.intrinsics;
+    const Camera& ci = i.intrinsics;
+    const Camera& cj = j.intrinsics;
     Matrix3<T> Ki_inverse, Kj_inverse;
-    Ki_inverse << T(1 / ci.fx), T(0), T(-ci.cx / ci.fx), T(0), T(1 / ci.fy), T(-ci.cy / ci.fy),
-        T(0), T(0), T(1);
-    Kj_inverse << T(1 / cj.fx), T(0), T(-cj.cx / cj.fx), T(0), T(1 / cj.fy), T(-cj.cy / cj.fy),
-        T(0), T(0), T(1);
+    Ki_inverse << T(1 / ci.fx()), T(0), T(-ci.cx() / ci.fx()), T(0), T(1 / ci.fy()),
+        T(-ci.cy() / ci.fy()), T(0), T(0), T(1);
+    Kj_inverse << T(1 / cj.fx()), T(0), T(-cj.cx() / cj.fx()), T(0), T(1 / cj.fy()),
+        T(-cj.cy() / cj.fy()), T(0), T(0), T(1);
     const Matrix3<T> F = Kj_inverse.transpose() * E * Ki_inverse;
     const Vector3<T> p = match.pixel1.homogeneous().cast<T>();
     const Vector3<T> q = match.pixel2.homogeneous().cast<T>();
@@ -324,6 +325,45 @@ TEST(EpipolarCost, JacobianPassesGradientChecker) {
   }
 }
 
+TEST(EpipolarCost, WorksWithAnyLens) {
+  Random random(14);
+  ceres::NumericDiffOptions numeric;
+  numeric.ridders_relative_initial_step_size = 1e-4;
+  for (int number = 0; number < 18; ++number) {
+    const LensRig lenses = MakeLensRig(number, &random);
+    const Pose pose = RandomPose(2, &random);
+    for (const Match& m : UnrelatedLensMatches(lenses, 9, &random)) {
+      const double expected = SampsonError(pose, lenses.rig, m) / 0.5;
+      for (const Form& form : kForms) {
+        const QuaternionOrder order = kOrders[number % 2];
+        const Blocks blocks = MakeBlocks(form, order, pose, lenses.rig, m, &random);
+        const auto cost = MakeCost(form, lenses.rig, m, 0.5, order);
+        ASSERT_NE(cost, nullptr);
+        double r = 0.0;
+        ASSERT_TRUE(cost->Evaluate(blocks.Pointers().data(), &r, nullptr));
+        EXPECT_NEAR(r, expected, 1e-9 * (1 + std::abs(expected)));
+        const auto manifold = MakeManifold(order);
+        std::vector<const ceres::Manifold*> manifolds(blocks.size(), nullptr);
+        for (int k = 0; k < blocks.size(); k += 2) manifolds[k] = manifold.get();
+        const ceres::GradientChecker checker(cost.get(), &manifolds, numeric);
+        EXPECT_TRUE(checker.Probe(blocks.Pointers().data(), 1e-5, nullptr))
+            << Name(form, m, order) << ", rig " << number;
+      }
+    }
+  }
+}
+
+TEST(EpipolarCost, APixelWithoutARayHasNone) {
+  Rig rig;
+  rig.cameras.resize(1);
+  rig.cameras[0].intrinsics = {CameraModel::kOpencvFisheye, {300, 300, 320, 240}, 640, 480};
+  Match m;
+  m.pixel1 = m.pixel2 = {320, 240};
+  EXPECT_NE(MakeCost(kForms[0], rig, m, 1.0, QuaternionOrder::kCeres), nullptr);
+  m.pixel2.x() += 300 * 3.2;
+  EXPECT_EQ(MakeCost(kForms[0], rig, m, 1.0, QuaternionOrder::kCeres), nullptr);
+}
+
 // The residual does not depend on the length of q, so along q its derivative is zero.
 TEST(EpipolarCost, JacobianIsZeroAlongTheQuaternion) {
   Random random(5);
@@ -378,8 +418,8 @@ TEST(EpipolarCost, IsZeroAtTheEpipoles) {
   Random random(7);
   Rig rig;
   rig.cameras.resize(2);
-  rig.cameras[0].intrinsics = {400, 420, 320, 240, 640, 480};
-  rig.cameras[1].intrinsics = {500, 450, 310, 250, 640, 480};
+  rig.cameras[0].intrinsics = Camera::Pinhole(400, 420, 320, 240, 640, 480);
+  rig.cameras[1].intrinsics = Camera::Pinhole(500, 450, 310, 250, 640, 480);
   Pose forward;
   forward.t = {0, 0, -1};
   Match intra, inter;
@@ -457,7 +497,7 @@ TEST(EpipolarCost, TwoEqualPosesAreNoUsableStart) {
 TEST(EpipolarCost, StaysFiniteBesideTheEpipoleAndBesideZero) {
   Rig rig;
   rig.cameras.resize(1);
-  rig.cameras[0].intrinsics = {400, 420, 0, 0, 640, 480};
+  rig.cameras[0].intrinsics = Camera::Pinhole(400, 420, 0, 0, 640, 480);
   const Form form = {false, false};
   for (double size = 1.0; size > 1e-300; size *= 1e-3) {
     Match beside, away;
@@ -545,7 +585,7 @@ TEST(EpipolarCost, BadArgumentsGiveNull) {
       }
     }
     Rig focal = rig, rotation = rig;
-    focal.cameras[0].intrinsics.fx = 0.0;
+    focal.cameras[0].intrinsics.parameters[0] = 0.0;
     rotation.cameras[0].Q *= 2.0;
     EXPECT_EQ(MakeCost(form, focal, good, 1.0, kOrder), nullptr);
     EXPECT_EQ(MakeCost(form, rotation, good, 1.0, kOrder), nullptr);

@@ -12,6 +12,7 @@
 #include "rigel/core/epipolar.h"
 #include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/least_squares/uncertainty.h"
+#include "rigel/test/core/pinhole.h"
 #include "rigel/test/refine/pixel_noise.h"
 #include "rigel/test/refine/refine_scene.h"
 
@@ -141,7 +142,7 @@ std::vector<Match> LandmarkMatches(const FramePair& pair, int num_points, Random
   std::vector<Match> matches;
   const auto project = [&](int k, const Eigen::Vector3d& x) {
     const RigCamera& camera = pair.rig.cameras[k];
-    return camera.intrinsics.Project(camera.Q.transpose() * (x - camera.s));
+    return ProjectPinhole(camera.intrinsics, camera.Q.transpose() * (x - camera.s));
   };
   for (int n = 0; n < num_points; ++n) {
     const double z = random->Uniform(3, 20);
@@ -326,18 +327,31 @@ TEST(FitInformation, WithoutNoiseTheCovarianceIsThatOfLeastSquares) {
   }
 }
 
+// The same rays through a fisheye in place of camera k.
+void PutFisheye(int k, FramePair* pair) {
+  Camera& camera = pair->rig.cameras[k].intrinsics;
+  const Camera old = camera;
+  camera = {CameraModel::kOpencvFisheye, {600, 600, 601, 183, -0.03, 4e-3}, 1226, 370};
+  for (Match& match : pair->matches) {
+    if (match.camera1 == k) Project(camera, AlongRay(old, match.pixel1), &match.pixel1);
+    if (match.camera2 == k) Project(camera, AlongRay(old, match.pixel2), &match.pixel2);
+  }
+}
+
 // What the calibration does is linear: the minimum for a rig with a small error against that of the
 // right one.
 TEST(FitInformation, CalibrationErrorsMoveTheMotionAsStated) {
-  for (int index = 0; index < 3; ++index) {
-    FramePair pair = ExactPair(150, index);
+  // Of the two cameras none, one and both are fisheyes.
+  for (int index = 0; index < 9; ++index) {
+    FramePair pair = ExactPair(150, index / 3);
+    for (int k = 0; k < index % 3; ++k) PutFisheye(k, &pair);
     for (RigCamera& camera : pair.rig.cameras) {
       camera.rotation_sigma = 1e-3;
       camera.position_sigma = 1e-2;
       camera.focal_sigma = 1e-3;
     }
     RefineOptions options;
-    options.noise_px = 0.01;
+    options.noise_px = 0.1;  // the steps, of some 0.01 px, then change no weight
     Pose reference = *pair.truth;
     const RefineSummary summary = RefinePair(options, pair, &reference);
     ASSERT_EQ(summary.calibration_gain.size(), pair.rig.cameras.size());
@@ -357,8 +371,8 @@ TEST(FitInformation, CalibrationErrorsMoveTheMotionAsStated) {
           } else if (error < 6) {
             camera.s += step * unit;
           } else {
-            camera.intrinsics.fx *= 1.0 + step;
-            camera.intrinsics.fy *= 1.0 + step;
+            camera.intrinsics.parameters[0] *= 1.0 + step;
+            camera.intrinsics.parameters[1] *= 1.0 + step;
           }
           moved[side] = *pair.truth;
           RefinePair(options, wrong, &moved[side]);

@@ -9,6 +9,7 @@
 #include "rigel/core/epipolar.h"
 #include "rigel/core/frame_pair.h"
 #include "rigel/core/random.h"
+#include "rigel/test/core/pinhole.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -48,7 +49,7 @@ inline FramePair WallPair(Random* random) {
   FramePair pair;
   for (const double x : {0.0, 0.537}) {
     RigCamera camera;
-    camera.intrinsics = {707, 707, 601, 183, 1226, 370};
+    camera.intrinsics = Camera::Pinhole(707, 707, 601, 183, 1226, 370);
     camera.s = {x, 0, 0};
     pair.rig.cameras.push_back(camera);
   }
@@ -65,7 +66,7 @@ inline FramePair WallPair(Random* random) {
     m.camera2 = static_cast<int>(pair.matches.size() / 2) % 2;
     const auto project = [&](int k, const Eigen::Vector3d& x) {
       const RigCamera& camera = pair.rig.cameras[k];
-      return camera.intrinsics.Project(camera.Q.transpose() * (x - camera.s));
+      return ProjectPinhole(camera.intrinsics, camera.Q.transpose() * (x - camera.s));
     };
     m.pixel1 = project(m.camera1, X);
     m.pixel2 = project(m.camera2, truth * X);

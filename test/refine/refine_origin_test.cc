@@ -104,8 +104,8 @@ TEST(Origin, PixelsMayBeOfAnySize) {
     FramePair small = pair;
     const double unit = 1.0 / 400.0;  // to fx = 1
     for (RigCamera& camera : small.rig.cameras) {
-      PinholeCamera& c = camera.intrinsics;
-      c = {unit * c.fx, unit * c.fy, unit * c.cx, unit * c.cy, 2, 2};
+      Camera& c = camera.intrinsics;
+      c = Camera::Pinhole(unit * c.fx(), unit * c.fy(), unit * c.cx(), unit * c.cy(), 2, 2);
     }
     for (Match& m : small.matches) {
       m.pixel1 *= unit;

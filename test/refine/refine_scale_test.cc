@@ -275,7 +275,7 @@ class QuarterCircle {
 
   QuarterCircle() {
     RigCamera camera;
-    camera.intrinsics = {1260, 1260, 800, 450, 1600, 900};
+    camera.intrinsics = Camera::Pinhole(1260, 1260, 800, 450, 1600, 900);
     camera.Q << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     camera.s = {1.7, 0, 1.5};
     rig_.cameras = {camera};

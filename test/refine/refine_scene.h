@@ -82,10 +82,10 @@ inline Rig MixedRig(Random* random) {
   Rig rig;
   for (int k = 0; k < 3; ++k) {
     RigCamera camera;
-    camera.intrinsics = {random->Uniform(300, 900),
-                         random->Uniform(300, 900),
-                         random->Uniform(250, 350),
-                         random->Uniform(200, 280),
+    // In braces the draws are in order.
+    camera.intrinsics = {CameraModel::kPinhole,
+                         {random->Uniform(300, 900), random->Uniform(300, 900),
+                          random->Uniform(250, 350), random->Uniform(200, 280)},
                          640,
                          480};
     camera.Q = ExpSO3(RandomVector3(0.0, 3.0, random));

@@ -370,7 +370,7 @@ TEST(Refine, WrongInputIsAFailureWithAMessageAndThePoseStays) {
   bad.matches[7].pixel1.x() = nan;
   expect_failure(RefineOptions(), bad, truth, "");
   bad = pair;
-  bad.rig.cameras[1].intrinsics.fx = 0;
+  bad.rig.cameras[1].intrinsics.parameters[0] = 0;
   expect_failure(RefineOptions(), bad, truth, "camera 1");
 }
 

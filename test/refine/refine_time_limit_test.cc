@@ -29,7 +29,7 @@ FramePair HostilePair(int num_matches, int num_cameras = 2) {
   Random random(7);
   for (int k = 0; k < num_cameras; ++k) {
     RigCamera camera;
-    camera.intrinsics = {400.0, 400.0, 320.0, 240.0, 640, 480};
+    camera.intrinsics = Camera::Pinhole(400.0, 400.0, 320.0, 240.0, 640, 480);
     camera.s = random.UnitVector3();
     pair.rig.cameras.push_back(camera);
   }

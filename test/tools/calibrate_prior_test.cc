@@ -347,7 +347,7 @@ TEST_F(CalibratePriorTest, OutputWithOtherMatchFilesIsRefused) {
 TEST_F(CalibratePriorTest, CamerasOfTwoVehiclesAreRefused) {
   const std::string matches = Misaligned("in");
   FramePair pair = Read(matches).back();
-  pair.rig.cameras[1].intrinsics.fx += 1;
+  pair.rig.cameras[1].intrinsics.parameters[0] += 1;
   std::string error;
   ASSERT_TRUE(WriteMatchFile(pair.name, pair, &error)) << error;
   const Outcome run =

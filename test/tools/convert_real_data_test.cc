@@ -160,7 +160,7 @@ class ConvertRealDataTest : public ToolsTest {
     for (double time = drive_->begin() + 0.537; time + interval < drive_->end(); time += step) {
       FramePair pair;
       RigCamera camera;
-      camera.intrinsics = {400, 400, 320, 240, 640, 480};
+      camera.intrinsics = Camera::Pinhole(400, 400, 320, 240, 640, 480);
       pair.rig.cameras.push_back(camera);
       pair.time1 = time;
       pair.time2 = time + interval;

@@ -29,7 +29,7 @@ TEST_F(MatchTest, EurocFilesHoldWhatTheDataSetKnows) {
     const RigCamera& expected = scene.cameras()[k].camera;
     EXPECT_NEAR((pair.rig.cameras[k].Q - expected.Q).norm(), 0, 1e-12);
     EXPECT_EQ(pair.rig.cameras[k].s, expected.s);
-    EXPECT_EQ(pair.rig.cameras[k].intrinsics.fy, expected.intrinsics.fy);
+    EXPECT_EQ(pair.rig.cameras[k].intrinsics.fy(), expected.intrinsics.fy());
     EXPECT_EQ(pair.rig.cameras[k].intrinsics.width, 376);
   }
   const Pose world_from_1 = PlaneScene::WorldFromBody(1);
@@ -77,8 +77,8 @@ TEST_F(MatchTest, KittiFilesHoldWhatTheDataSetKnows) {
   int intra = 0, good = 0;
   for (const Match& m : pair.matches) {
     intra += m.IsIntra() ? 1 : 0;
-    const Eigen::Vector3d u1 = pair.rig.cameras[m.camera1].intrinsics.Normalize(m.pixel1);
-    const Eigen::Vector3d u2 = pair.rig.cameras[m.camera2].intrinsics.Normalize(m.pixel2);
+    const Eigen::Vector3d u1 = AlongRay(pair.rig.cameras[m.camera1].intrinsics, m.pixel1);
+    const Eigen::Vector3d u2 = AlongRay(pair.rig.cameras[m.camera2].intrinsics, m.pixel2);
     const Eigen::Vector3d b = pair.truth->R * pair.rig.cameras[m.camera1].s + pair.truth->t -
                               pair.rig.cameras[m.camera2].s;
     const Eigen::Vector3d plane = b.cross(pair.truth->R * u1);

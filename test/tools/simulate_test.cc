@@ -140,10 +140,10 @@ TEST_F(SimulateTest, StreetWithARigFile) {
       "--distance_m=2", "--inter_share=0.25",        "--outlier_share=0.1", "--moving_share=0.1"};
   const Outcome run = RunTool("simulate", args + Args{"--output=" + Path("a")});
   ASSERT_EXIT_CODE(run, 0);
-  EXPECT_THAT(run.err, HasSubstr("rig.json: the distortion of 1 of 2 cameras is left out"));
   EXPECT_THAT(run.err, HasSubstr("rig.json: taken from the cameras: down -z, forward +x"));
   for (const FramePair& pair : ReadAll(Path("a"))) {
-    EXPECT_EQ(pair.rig.size(), 2);
+    ASSERT_EQ(pair.rig.size(), 2);
+    EXPECT_EQ(pair.rig.cameras[1].intrinsics.model, CameraModel::kOpencv);
     EXPECT_EQ(pair.matches.size(), 200u);
     EXPECT_NEAR(pair.truth->t.norm(), 2.0, 1e-12);
     EXPECT_LT(pair.truth->t.x(), -1.9);

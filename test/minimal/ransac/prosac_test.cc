@@ -17,7 +17,7 @@ GroupedMatches MakeMatches(int count, bool with_scores) {
   Rig rig;
   for (int k = 0; k < 2; ++k) {
     RigCamera camera;
-    camera.intrinsics = {400, 400, 320, 240, 640, 480};
+    camera.intrinsics = Camera::Pinhole(400, 400, 320, 240, 640, 480);
     camera.s = Eigen::Vector3d(k, 0, 0);
     rig.cameras.push_back(camera);
   }

@@ -16,6 +16,7 @@
 #include "rigel/minimal/numerics/polynomial.h"
 #include "rigel/minimal/solvers/three_point.h"
 #include "rigel/problems/scenes/synthetic.h"
+#include "rigel/test/core/pinhole.h"
 
 namespace rigel {
 namespace {
@@ -258,7 +259,7 @@ TEST(DepthSystem, PlanarReferenceOnTheHorizon) {
     FramePair pair;
     pair.rig.cameras.resize(2);
     for (int k = 0; k < 2; ++k) {
-      pair.rig.cameras[k].intrinsics = {400.0, 400.0, 320.0, 240.0, 640, 480};
+      pair.rig.cameras[k].intrinsics = Camera::Pinhole(400.0, 400.0, 320.0, 240.0, 640, 480);
       // At different heights, so that the point is on the horizon of one of them only.
       pair.rig.cameras[k].s = Vector3d(k - 0.5, 0.4 * k, 0.0);
     }
@@ -278,9 +279,9 @@ TEST(DepthSystem, PlanarReferenceOnTheHorizon) {
       Match match;
       match.camera1 = i;
       match.camera2 = j;
-      match.pixel1 =
-          pair.rig.cameras[i].intrinsics.Project(truth.Inverse() * X2 - pair.rig.cameras[i].s);
-      match.pixel2 = pair.rig.cameras[j].intrinsics.Project(X2 - pair.rig.cameras[j].s);
+      match.pixel1 = ProjectPinhole(pair.rig.cameras[i].intrinsics,
+                                    truth.Inverse() * X2 - pair.rig.cameras[i].s);
+      match.pixel2 = ProjectPinhole(pair.rig.cameras[j].intrinsics, X2 - pair.rig.cameras[j].s);
       pair.matches.push_back(match);
     }
     const PreparedMatches matches = Prepare(pair, PriorKind::kPlanar);

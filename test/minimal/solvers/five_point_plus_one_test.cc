@@ -172,7 +172,7 @@ TEST(FivePointPlusOne, ForwardMotionAndCoplanarPoints) {
       Match& match = problem.matches[k];
       // The first five on the plane normal . X = 15 of the first camera's frame.
       const Eigen::Vector2d pixel{rng.Uniform(120.0, 520.0), rng.Uniform(90.0, 390.0)};
-      const Eigen::Vector3d u = problem.rig.cameras[match.camera1].intrinsics.Normalize(pixel);
+      const Eigen::Vector3d u = AlongRay(problem.rig.cameras[match.camera1].intrinsics, pixel);
       const double depth = k < 5 ? std::clamp(15.0 / std::abs(normal.dot(u)), 5.0, 60.0) : 10.0;
       EXPECT_TRUE(MakeMatch(problem.rig, problem.truth, match.camera1, match.camera2, pixel, depth,
                             &match));

@@ -30,7 +30,7 @@ Problem MakeProblem(uint64_t seed) {
   Problem p;
   for (int k = 0; k < 3; ++k) {
     RigCamera camera;
-    camera.intrinsics = {400.0 + 50 * k, 380.0, 320.0, 240.0, 640, 480};
+    camera.intrinsics = Camera::Pinhole(400.0 + 50 * k, 380.0, 320.0, 240.0, 640, 480);
     camera.Q = ExpSO3(random.NormalVector3());
     camera.s = random.NormalVector3();
     p.rig.cameras.push_back(camera);

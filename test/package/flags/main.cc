@@ -56,7 +56,7 @@ int main() {
   const rigel::Pose again = rigel::Pose::FromQuaternion(q, estimate.pose.t);
   Check((again.R - estimate.pose.R).norm() < 1e-12, "a quaternion there and back");
   const Eigen::Vector2d pixel = pair.matches[0].pixel1;
-  Check(pair.rig.cameras[0].intrinsics.Normalize(pixel).allFinite(), "a pixel");
+  Check(AlongRay(pair.rig.cameras[0].intrinsics, pixel).allFinite(), "a pixel");
   const Eigen::Matrix<double, 6, 6> covariance = *estimate.refine.covariance;
   Check((covariance - covariance.transpose()).norm() <= 1e-9 * covariance.norm(),
         "it is symmetric");

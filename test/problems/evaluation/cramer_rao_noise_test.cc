@@ -17,7 +17,7 @@ TEST(CramerRao, BeforeAWallThereIsNoneWithoutExactPixels) {
   FramePair exact;
   for (const double x : {0.0, 0.537}) {
     RigCamera camera;
-    camera.intrinsics = {707, 707, 601, 183, 1226, 370};
+    camera.intrinsics = Camera::Pinhole(707, 707, 601, 183, 1226, 370);
     camera.s = {x, 0, 0};
     exact.rig.cameras.push_back(camera);
   }
@@ -25,8 +25,8 @@ TEST(CramerRao, BeforeAWallThereIsNoneWithoutExactPixels) {
   Random random(1);
   const auto project = [](const RigCamera& camera, const Eigen::Vector3d& X) {
     const Eigen::Vector3d p = X - camera.s;
-    return Pixel(camera.intrinsics.fx * p.x() / p.z() + camera.intrinsics.cx,
-                 camera.intrinsics.fy * p.y() / p.z() + camera.intrinsics.cy);
+    return Pixel(camera.intrinsics.fx() * p.x() / p.z() + camera.intrinsics.cx(),
+                 camera.intrinsics.fy() * p.y() / p.z() + camera.intrinsics.cy());
   };
   for (int k = 0; k < 240; ++k) {
     const Eigen::Vector3d X(random.Uniform(-6, 6), random.Uniform(-2, 2), random.Uniform(8, 8.2));

@@ -260,11 +260,11 @@ TEST(CramerRao, SharedPixelsCorrelate) {
     m.camera2 = 1 - m.camera2;
     const RigCamera& camera1 = pair.rig.cameras[m.camera1];
     const RigCamera& camera2 = pair.rig.cameras[m.camera2];
-    const Eigen::Vector3d x = camera1.intrinsics.Normalize(m.pixel1);
+    const Eigen::Vector3d x = AlongRay(camera1.intrinsics, m.pixel1);
     const Eigen::Vector3d X = pair.truth->R * (camera1.Q * (12.0 * x) + camera1.s) + pair.truth->t;
     const Eigen::Vector3d p = camera2.Q.transpose() * (X - camera2.s);
-    m.pixel2 = {camera2.intrinsics.fx * p.x() / p.z() + camera2.intrinsics.cx,
-                camera2.intrinsics.fy * p.y() / p.z() + camera2.intrinsics.cy};
+    m.pixel2 = {camera2.intrinsics.fx() * p.x() / p.z() + camera2.intrinsics.cx(),
+                camera2.intrinsics.fy() * p.y() / p.z() + camera2.intrinsics.cy()};
     pair.matches.push_back(m);
   }
   pair.columns.inlier.assign(2 * n, 1);

@@ -19,6 +19,7 @@
 #include "rigel/minimal/catalogue.h"
 #include "rigel/minimal/ransac/sampler.h"
 #include "rigel/minimal/solvers/seventeen_point_li.h"
+#include "rigel/test/core/pinhole.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -73,7 +74,7 @@ Rig MakeRig(Configuration configuration, Random* random) {
   for (int k = 0; k < num_cameras; ++k) {
     const Eigen::Vector3d positions[3] = {{-0.5, 0.0, 0.0}, {0.5, 0.0, 0.0}, {0.0, 0.4, 0.3}};
     RigCamera camera;
-    camera.intrinsics = {400.0, 400.0, 320.0, 240.0, 640, 480};
+    camera.intrinsics = Camera::Pinhole(400.0, 400.0, 320.0, 240.0, 640, 480);
     camera.Q = ExpSO3(0.1 * random->NormalVector3());
     camera.s = positions[k] + 0.05 * random->NormalVector3();
     switch (configuration) {
@@ -162,8 +163,8 @@ bool MakeProblem(const SolverInfo& solver, Configuration configuration, int inde
     const Eigen::Vector3d X1 = camera1.Q.transpose() * (X - camera1.s);
     const Eigen::Vector3d X2 = camera2.Q.transpose() * (truth * X - camera2.s);
     if (!(X1.z() > 0.1 && X2.z() > 0.1)) continue;
-    match.pixel1 = camera1.intrinsics.Project(X1);
-    match.pixel2 = camera2.intrinsics.Project(X2);
+    match.pixel1 = ProjectPinhole(camera1.intrinsics, X1);
+    match.pixel2 = ProjectPinhole(camera2.intrinsics, X2);
     if (!camera2.intrinsics.InImage(match.pixel2)) continue;
     problem->matches.push_back(match);
   }

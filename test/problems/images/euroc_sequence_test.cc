@@ -78,10 +78,10 @@ TEST_F(EurocSequence, CamerasAreAsTheirSensorsSay) {
       const ImageCamera& camera = sequence.cameras[k];
       EXPECT_NEAR((camera.camera.Q - expected.camera.Q).norm(), 0, 1e-12);
       EXPECT_EQ(camera.camera.s, expected.camera.s);
-      EXPECT_EQ(camera.camera.intrinsics.fx, expected.camera.intrinsics.fx);
-      EXPECT_EQ(camera.camera.intrinsics.fy, expected.camera.intrinsics.fy);
-      EXPECT_EQ(camera.camera.intrinsics.cx, expected.camera.intrinsics.cx);
-      EXPECT_EQ(camera.camera.intrinsics.cy, expected.camera.intrinsics.cy);
+      EXPECT_EQ(camera.camera.intrinsics.fx(), expected.camera.intrinsics.fx());
+      EXPECT_EQ(camera.camera.intrinsics.fy(), expected.camera.intrinsics.fy());
+      EXPECT_EQ(camera.camera.intrinsics.cx(), expected.camera.intrinsics.cx());
+      EXPECT_EQ(camera.camera.intrinsics.cy(), expected.camera.intrinsics.cy());
       EXPECT_EQ(camera.camera.intrinsics.width, 376);
       EXPECT_EQ(camera.camera.intrinsics.height, 240);
       ASSERT_TRUE(camera.distortion.has_value());

@@ -262,7 +262,7 @@ TEST_F(ImageFeaturesTest, PixelsThatTheDistortionCannotReachAreDropped) {
   EXPECT_LT(rest.pixels.size(), all);
   EXPECT_EQ(rest.descriptors.rows, static_cast<int>(rest.pixels.size()));
   for (const Eigen::Vector2d& pixel : rest.pixels) {
-    EXPECT_LT(camera.camera.intrinsics.Normalize(pixel).head<2>().norm(), 0.6);
+    EXPECT_LT(AlongRay(camera.camera.intrinsics, pixel).head<2>().norm(), 0.6);
   }
 }
 

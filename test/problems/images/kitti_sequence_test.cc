@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "rigel/test/core/pinhole.h"
 #include "rigel/test/problems/images/plane_scene.h"
 
 namespace rigel {
@@ -70,11 +71,11 @@ TEST_F(KittiSequence, GreyCamerasAndAllFramesUpToTheLastImage) {
   for (const ImageCamera& camera : sequence.cameras) {
     EXPECT_FALSE(camera.distortion.has_value());
     EXPECT_TRUE(camera.camera.Q.isIdentity(0));
-    const PinholeCamera& c = camera.camera.intrinsics;
-    EXPECT_EQ(c.fx, 707.0912);
-    EXPECT_EQ(c.fy, 707.0912);
-    EXPECT_EQ(c.cx, 601.8873);
-    EXPECT_EQ(c.cy, 183.1104);
+    const Camera& c = camera.camera.intrinsics;
+    EXPECT_EQ(c.fx(), 707.0912);
+    EXPECT_EQ(c.fy(), 707.0912);
+    EXPECT_EQ(c.cx(), 601.8873);
+    EXPECT_EQ(c.cy(), 183.1104);
   }
   EXPECT_EQ(sequence.cameras[0].camera.s, Eigen::Vector3d::Zero());
   // P = K [I | t]: the right camera is at -t.
@@ -101,7 +102,8 @@ TEST_F(KittiSequence, ColourCamerasAreWhereTheirProjectionsSay) {
                                       (P3 * X.homogeneous()).hnormalized()};
   for (int k = 0; k < 2; ++k) {
     const RigCamera& camera = sequence.cameras[k].camera;
-    const Eigen::Vector2d pixel = camera.intrinsics.Project(camera.Q.transpose() * (X - camera.s));
+    const Eigen::Vector2d pixel =
+        ProjectPinhole(camera.intrinsics, camera.Q.transpose() * (X - camera.s));
     EXPECT_NEAR((pixel - expected[k]).norm(), 0, 1e-9);
   }
 }

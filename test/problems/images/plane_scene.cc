@@ -1,4 +1,5 @@
 #include "rigel/test/problems/images/plane_scene.h"
+#include "rigel/test/core/pinhole.h"
 
 #include <cstdio>
 #include <filesystem>
@@ -40,7 +41,7 @@ cv::Mat MakeTexture() {
 ImageCamera MakeCamera(double fx, double fy, double cx, double cy, const Eigen::Quaterniond& q,
                        const Eigen::Vector3d& s, const RadialTangential& distortion) {
   ImageCamera camera;
-  camera.camera.intrinsics = {fx, fy, cx, cy, 376, 240};
+  camera.camera.intrinsics = Camera::Pinhole(fx, fy, cx, cy, 376, 240);
   camera.camera.Q = q.normalized().toRotationMatrix();
   camera.camera.s = s;
   camera.distortion = distortion;
@@ -86,12 +87,12 @@ Eigen::Vector3d PlaneScene::Intersect(const Eigen::Vector3d& center,
 }
 
 cv::Mat PlaneScene::Render(const ImageCamera& camera, const Pose& world_from_body) const {
-  const PinholeCamera& c = camera.camera.intrinsics;
+  const Camera& c = camera.camera.intrinsics;
   const Pose world_from_camera = world_from_body * BodyFromCamera(camera.camera);
   cv::Mat map(c.height, c.width, CV_32FC2);
   for (int y = 0; y < c.height; ++y) {
     for (int x = 0; x < c.width; ++x) {
-      Eigen::Vector3d u = c.Normalize({x, y});
+      Eigen::Vector3d u = AlongRay(c, {x, y});
       if (camera.distortion) u.head<2>() = Undistort(*camera.distortion, u.head<2>());
       const Eigen::Vector3d X = Intersect(world_from_camera.t, world_from_camera.R * u) - kPoint;
       map.at<cv::Vec2f>(y, x) =
@@ -111,14 +112,14 @@ Eigen::Vector2d PlaneScene::Transfer(const RigCamera& camera1, const Pose& world
   const Pose world_from_camera1 = world_from_body1 * BodyFromCamera(camera1);
   const Pose world_from_camera2 = world_from_body2 * BodyFromCamera(camera2);
   const Eigen::Vector3d X =
-      Intersect(world_from_camera1.t, world_from_camera1.R * camera1.intrinsics.Normalize(pixel1));
-  return camera2.intrinsics.Project(world_from_camera2.Inverse() * X);
+      Intersect(world_from_camera1.t, world_from_camera1.R * AlongRay(camera1.intrinsics, pixel1));
+  return ProjectPinhole(camera2.intrinsics, world_from_camera2.Inverse() * X);
 }
 
 int64_t PlaneSceneTime(int frame) { return 1403715273262142976 + frame * INT64_C(50000000); }
 
 std::string SensorYaml(const ImageCamera& camera) {
-  const PinholeCamera& c = camera.camera.intrinsics;
+  const Camera& c = camera.camera.intrinsics;
   const RadialTangential d = camera.distortion.value_or(RadialTangential());
   std::ostringstream text;
   text.precision(17);
@@ -129,8 +130,8 @@ std::string SensorYaml(const ImageCamera& camera) {
     text << camera.camera.s[k] << ",\n         ";
   }
   text << "0.0, 0.0, 0.0, 1.0]\n\nrate_hz: 20\nresolution: [" << c.width << ", " << c.height
-       << "]\ncamera_model: pinhole\nintrinsics: [" << c.fx << ", " << c.fy << ", " << c.cx << ", "
-       << c.cy << "] #fu, fv, cu, cv\ndistortion_model: radial-tangential\n"
+       << "]\ncamera_model: pinhole\nintrinsics: [" << c.fx() << ", " << c.fy() << ", " << c.cx()
+       << ", " << c.cy() << "] #fu, fv, cu, cv\ndistortion_model: radial-tangential\n"
        << "distortion_coefficients: [" << d.k1 << ", " << d.k2 << ", " << d.p1 << ", " << d.p2
        << "]\n\n";
   return text.str();
@@ -195,7 +196,7 @@ void WriteKittiScene(const PlaneScene& scene, int num_frames, const std::string&
       // The right camera is half a metre beside the left one.
       ImageCamera camera = scene.cameras()[0];
       camera.distortion.reset();
-      camera.camera.intrinsics.fy = camera.camera.intrinsics.fx;
+      camera.camera.intrinsics.parameters[1] = camera.camera.intrinsics.fx();
       camera.camera.s += camera.camera.Q * Eigen::Vector3d(0.5 * k, 0, 0);
       char image[32];
       std::snprintf(image, sizeof(image), "/%06d.png", frame);

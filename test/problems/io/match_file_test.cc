@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "rigel/test/core/camera_cases.h"
 #include "rigel/test/problems/io/match_file_text.h"
 
 namespace rigel {
@@ -21,10 +22,10 @@ TEST(MatchFile, ReadsEveryField) {
   EXPECT_EQ(pair.sequence, "loop-06");
   ASSERT_EQ(pair.rig.size(), 2);
   const RigCamera& c0 = pair.rig.cameras[0];
-  EXPECT_EQ(c0.intrinsics.fx, 700.5);
-  EXPECT_EQ(c0.intrinsics.fy, 701);
-  EXPECT_EQ(c0.intrinsics.cx, 600);
-  EXPECT_EQ(c0.intrinsics.cy, 180.25);
+  EXPECT_EQ(c0.intrinsics.fx(), 700.5);
+  EXPECT_EQ(c0.intrinsics.fy(), 701);
+  EXPECT_EQ(c0.intrinsics.cx(), 600);
+  EXPECT_EQ(c0.intrinsics.cy(), 180.25);
   EXPECT_EQ(c0.intrinsics.width, 1226);
   EXPECT_EQ(c0.intrinsics.height, 370);
   EXPECT_EQ(c0.Q, Eigen::Matrix3d::Identity());
@@ -93,6 +94,18 @@ TEST(MatchFile, ReadsErrorsAndTimesOfCameras) {
                          "camera_time 1 -0.045\n"),
             std::string::npos);
   ExpectSame(MustParse(written), pair);
+}
+
+TEST(MatchFile, ReadsAndWritesEachCameraModel) {
+  for (const CameraCase& camera_case : CameraCases()) {
+    SCOPED_TRACE(camera_case.name);
+    FramePair pair = MustParse(kValid);
+    pair.rig.cameras[1].intrinsics = camera_case.camera;
+    const std::string text = FormatMatches(pair);
+    EXPECT_NE(text.find(std::string("\ncamera 1 ") + CameraModelName(camera_case.camera.model)),
+              std::string::npos);
+    ExpectSame(MustParse(text), pair);
+  }
 }
 
 TEST(MatchFile, OptionalLinesMayBeAbsent) {

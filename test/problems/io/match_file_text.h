@@ -87,10 +87,7 @@ inline void ExpectSame(const FramePair& a, const FramePair& b) {
   for (int k = 0; k < a.rig.size(); ++k) {
     const RigCamera& ca = a.rig.cameras[k];
     const RigCamera& cb = b.rig.cameras[k];
-    EXPECT_EQ(ca.intrinsics.fx, cb.intrinsics.fx);
-    EXPECT_EQ(ca.intrinsics.fy, cb.intrinsics.fy);
-    EXPECT_EQ(ca.intrinsics.cx, cb.intrinsics.cx);
-    EXPECT_EQ(ca.intrinsics.cy, cb.intrinsics.cy);
+    EXPECT_TRUE(SameLens(ca.intrinsics, cb.intrinsics));
     EXPECT_EQ(ca.intrinsics.width, cb.intrinsics.width);
     EXPECT_EQ(ca.intrinsics.height, cb.intrinsics.height);
     EXPECT_LT((ca.Q - cb.Q).cwiseAbs().maxCoeff(), kRotationTolerance);
@@ -157,9 +154,10 @@ inline FramePair RandomPair(uint64_t seed) {
   pair.sequence = "s" + std::to_string(seed);
   pair.rig.cameras.resize(1 + random.Index(12));
   for (RigCamera& camera : pair.rig.cameras) {
-    PinholeCamera& c = camera.intrinsics;
-    c = {random.Uniform(1, 1e4),    random.Uniform(1, 1e4),   number(), number(),
-         1 + random.Index(1 << 30), 1 + random.Index(1 << 30)};
+    camera.intrinsics = {CameraModel::kPinhole,
+                         {random.Uniform(1, 1e4), random.Uniform(1, 1e4), number(), number()},
+                         1 + random.Index(1 << 30),
+                         1 + random.Index(1 << 30)};
     const Pose p = pose();
     camera.Q = p.R;
     camera.s = p.t;

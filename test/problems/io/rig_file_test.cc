@@ -3,11 +3,13 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "rigel/test/core/camera_cases.h"
 #include "rigel/test/problems/io/match_file_text.h"
 
 namespace rigel {
@@ -43,13 +45,13 @@ TEST(RigFile, ReadsEveryField) {
   EXPECT_EQ(file.down, -Eigen::Vector3d::UnitZ());
   EXPECT_EQ(file.forward, Eigen::Vector3d::UnitX());
   EXPECT_EQ(file.camera_names, (std::vector<std::string>{"front", "1"}));
-  EXPECT_EQ(file.num_undistorted, 1);
+  EXPECT_EQ(file.rig.cameras[1].intrinsics.parameters[7], 1e-3);
   ASSERT_EQ(file.rig.size(), 2);
   const RigCamera& camera = file.rig.cameras[0];
-  EXPECT_EQ(camera.intrinsics.fx, 700);
-  EXPECT_EQ(camera.intrinsics.fy, 701);
-  EXPECT_EQ(camera.intrinsics.cx, 320);
-  EXPECT_EQ(camera.intrinsics.cy, 240);
+  EXPECT_EQ(camera.intrinsics.fx(), 700);
+  EXPECT_EQ(camera.intrinsics.fy(), 701);
+  EXPECT_EQ(camera.intrinsics.cx(), 320);
+  EXPECT_EQ(camera.intrinsics.cy(), 240);
   EXPECT_EQ(camera.intrinsics.width, 640);
   EXPECT_EQ(camera.intrinsics.height, 480);
   EXPECT_EQ(camera.s, Eigen::Vector3d(0.5, -0.1, 2));
@@ -57,7 +59,7 @@ TEST(RigFile, ReadsEveryField) {
   Eigen::Matrix3d Q;
   Q << 1, 0, 0, 0, -0.28, -0.96, 0, 0.96, -0.28;
   EXPECT_LT((camera.Q - Q).cwiseAbs().maxCoeff(), 1e-15);
-  EXPECT_EQ(file.rig.cameras[1].intrinsics.cy, 4);
+  EXPECT_EQ(file.rig.cameras[1].intrinsics.cy(), 4);
 }
 
 TEST(RigFile, ReadsTheErrorAndTheTimeOfACamera) {
@@ -70,35 +72,44 @@ TEST(RigFile, ReadsTheErrorAndTheTimeOfACamera) {
   EXPECT_EQ(camera.time_offset, -0.045);
 }
 
-TEST(RigFile, PinholePartOfEachModel) {
+TEST(RigFile, ReadsEachModel) {
+  for (const CameraCase& camera_case : CameraCases()) {
+    SCOPED_TRACE(camera_case.name);
+    const Camera& camera = camera_case.camera;
+    std::ostringstream keys;
+    keys.precision(17);
+    keys << "\"model\": \"" << CameraModelName(camera.model) << "\", \"parameters\": [";
+    for (int k = 0; k < NumCameraParameters(camera.model); ++k) {
+      keys << (k > 0 ? ", " : "") << camera.parameters[k];
+    }
+    const RigFile file = MustRead(OneCamera(keys.str() + "]"));
+    ASSERT_EQ(file.rig.size(), 1);
+    EXPECT_TRUE(SameLens(file.rig.cameras[0].intrinsics, camera));
+  }
+}
+
+TEST(RigFile, ReadsOlderKeys) {
+  using M = CameraModel;
   const struct {
     const char* keys;
-    double fy, cy;
-    int undistorted;
+    Camera camera;
   } cases[] = {
-      {R"("model": "simple_pinhole", "parameters": [7, 3, 4])", 7, 4, 0},
-      {R"("model": "simple_radial", "parameters": [7, 3, 4, 0.1])", 7, 4, 1},
-      {R"("model": "radial", "parameters": [7, 3, 4, 0, 0])", 7, 4, 0},
-      {R"("model": "full_opencv", "parameters": [7, 8, 3, 4, 0, 0, 0, 0, 0, 0, 0, 1])", 8, 4, 1},
-      {R"("model": "pinhole", "fx": 7, "fy": 8, "cx": 3, "cy": 4)", 8, 4, 0},
-      {R"("model": "pinhole", "fx": 7, "fy": 8, "cx": 3, "cy": 4, "distortion": [])", 8, 4, 0},
-      {R"("model": "radial k1 k2 k3", "fx": 7, "fy": 8, "cx": 3, "cy": 4,
-          "distortion": [0.1, 0, 0])",
-       8, 4, 1},
-      {R"("model": "brown k1 k2 p1 p2 k3", "fx": 7, "fy": 8, "cx": 3, "cy": 4,
-          "distortion": [0, 0, 0, 0, 0])",
-       8, 4, 0},
+      {R"("model": "pinhole")", {M::kPinhole, {7, 8, 3, 4}}},
+      {R"("model": "pinhole", "distortion": [])", {M::kPinhole, {7, 8, 3, 4}}},
+      {R"("model": "radial k1 k2 k3", "distortion": [0.1, 0.2, 0.3])",
+       {M::kFullOpencv, {7, 8, 3, 4, 0.1, 0.2, 0, 0, 0.3}}},
+      {R"("model": "brown k1 k2 p1 p2 k3", "distortion": [1e-1, 2e-1, 3e-3, 4e-3, 5e-2])",
+       {M::kFullOpencv, {7, 8, 3, 4, 0.1, 0.2, 0.003, 0.004, 0.05}}},
+      {R"("model": "brown k1 k2 p1 p2 k3", "distortion": [0, 0, 0, 0, 0])",
+       {M::kPinhole, {7, 8, 3, 4}}},
+      {R"("model": "equidistant (kalibr) k1 k2 k3 k4", "distortion": [0.1, 0.2, 0.3, 0.4])",
+       {M::kOpencvFisheye, {7, 8, 3, 4, 0.1, 0.2, 0.3, 0.4}}},
   };
   for (const auto& c : cases) {
     SCOPED_TRACE(c.keys);
-    const RigFile file = MustRead(OneCamera(c.keys));
-    ASSERT_EQ(file.rig.size(), 1);
-    const PinholeCamera& camera = file.rig.cameras[0].intrinsics;
-    EXPECT_EQ(camera.fx, 7);
-    EXPECT_EQ(camera.fy, c.fy);
-    EXPECT_EQ(camera.cx, 3);
-    EXPECT_EQ(camera.cy, c.cy);
-    EXPECT_EQ(file.num_undistorted, c.undistorted);
+    const RigFile file =
+        MustRead(OneCamera(std::string(R"("fx": 7, "fy": 8, "cx": 3, "cy": 4, )") + c.keys));
+    EXPECT_TRUE(SameLens(file.rig.cameras[0].intrinsics, c.camera));
   }
 }
 
@@ -120,12 +131,14 @@ TEST(RigFile, BrokenOnesAreRefused) {
       {"\"cameras\"", "\"forward\": [0, 1], \"cameras\"", "forward has 2 entries, expected 3"},
       {"\"front\"", "7", "camera 0: name is '7', expected a text"},
       {"\"model\"", "\"kind\"", "camera 0 (front): no 'model', expected the name"},
-      {"pinhole", "opencv_fisheye", "camera 0 (front): camera model 'opencv_fisheye' is not read"},
-      {"pinhole", "omni", "camera 0 (front): camera model 'omni' is not read, expected pinhole"},
+      {"pinhole", "fisheye624", "camera 0 (front): camera model 'fisheye624' is not read"},
+      {"pinhole", "spherical",
+       "camera model 'spherical' is not read, expected one of pinhole, sim"},
+      {"pinhole", "opencv_fisheye", "camera 0 (front): parameters has 4 entries, expected 8"},
       {"pinhole", "PINHOLE", "camera model 'PINHOLE' is not read"},
       {"[7, 8, 3, 4]", "[7, 8, 3]", "parameters has 3 entries, expected 4 numbers"},
       {"[7, 8, 3, 4]", "7", "parameters has '7', expected 4 numbers"},
-      {"[7, 8, 3, 4]", "[7, 0, 3, 4]", "a focal length that is not positive, expected"},
+      {"[7, 8, 3, 4]", "[7, 0, 3, 4]", "pinhole: fy is 0.000000, expected a positive number"},
       {"[7, 8, 3, 4]", "[7, null, 3, 4]", "parameters is 'null', expected a number"},
       {"[7, 8, 3, 4]", "[7, 8, 3, 4], \"fx\": 7", "'parameters' and 'fx', expected one of them"},
       {"\"parameters\"", "\"values\"", "no 'fx', expected 'parameters', or 'fx', 'fy', 'cx'"},
@@ -154,7 +167,7 @@ TEST(RigFile, BrokenOnesAreRefused) {
 }
 
 TEST(RigFile, OlderModelsThatAreRefused) {
-  for (const char* model : {"equidistant (kalibr) k1 k2 k3 k4", "Fisheye624 k0..k5"}) {
+  for (const char* model : {"Fisheye624 k0..k5", "opencv_fisheye"}) {
     RigFile rig;
     std::string error;
     EXPECT_FALSE(ParseRigFile(
@@ -196,8 +209,8 @@ TEST(RigFile, RealRigs) {
       EXPECT_THAT(error, HasSubstr("is not read, expected pinhole"));
     }
   }
-  EXPECT_EQ(num_read, 8);
-  EXPECT_EQ(num_refused, 2);
+  EXPECT_EQ(num_read, 9);
+  EXPECT_EQ(num_refused, 1);
 }
 
 }  // namespace

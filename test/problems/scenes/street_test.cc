@@ -29,7 +29,7 @@ StreetOptions Surround(int num_cameras) {
   options.axes.forward = Eigen::Vector3d::UnitX();
   for (int k = 0; k < num_cameras; ++k) {
     RigCamera camera;
-    camera.intrinsics = {1000.0, 1000.0, 640.0, 480.0, 1280, 960};
+    camera.intrinsics = Camera::Pinhole(1000.0, 1000.0, 640.0, 480.0, 1280, 960);
     const Eigen::Matrix3d turn = ExpSO3(2.0 * kPi * k / num_cameras * Eigen::Vector3d::UnitZ());
     camera.Q << 0, 0, 1, -1, 0, 0, 0, -1, 0;  // its axes in the body, looking ahead
     camera.Q = turn * camera.Q;
@@ -57,7 +57,7 @@ Eigen::Vector3d PointOf(const FramePair& pair, size_t k, Depths* depths) {
   EXPECT_NEAR(GecTripleProduct(*pair.truth, rays), 0.0, 1e-11);
   EXPECT_TRUE(TriangulateDepths(*pair.truth, rays, depths));
   const RigCamera& camera = pair.rig.cameras[match.camera1];
-  const Eigen::Vector3d ray = camera.Q * camera.intrinsics.Normalize(match.pixel1);
+  const Eigen::Vector3d ray = camera.Q * AlongRay(camera.intrinsics, match.pixel1);
   return camera.s + depths->d1 * ray.normalized();
 }
 
@@ -120,6 +120,41 @@ TEST(Street, AllCamerasHaveMatchesAndNeighboursShareThem) {
   }
   EXPECT_EQ(num_inter, 300);
   for (int k = 0; k < 6; ++k) EXPECT_GT((count[{k, k}]), 50) << k;
+}
+
+// Raw pixels, with rays beyond 90 degrees. The image is larger than the circle of the lens, whose
+// last pixels have no ray.
+TEST(Street, FisheyesSeeWhatTheirModelsSee) {
+  StreetOptions options = Surround(4);
+  options.outlier_share = 0.3;
+  options.inter_share = 0.2;
+  options.noise_px = 0.5;
+  for (RigCamera& camera : options.rig.cameras) {
+    // a - a^3 / 18 has its maximum at 140 degrees, 653 pixels from the centre.
+    camera.intrinsics = {CameraModel::kOpencvFisheye, {400, 400, 640, 480, -1.0 / 18.0}, 1280, 960};
+  }
+  int num_beyond_90 = 0;
+  for (int index = 0; index < 5; ++index) {
+    const FramePair pair = Street(options, index);
+    for (size_t k = 0; k < pair.matches.size(); ++k) {
+      const Match& match = pair.matches[k];
+      const std::array<double, 4>& exact = pair.columns.exact[k];
+      const Eigen::Vector3d ray =
+          AlongRay(options.rig.cameras[match.camera2].intrinsics, {exact[2], exact[3]});
+      EXPECT_TRUE(ray.allFinite());  // of outliers, too
+      if (pair.columns.inlier[k] == 0) continue;
+      Match there = match;
+      there.pixel1 = {exact[0], exact[1]};
+      there.pixel2 = {exact[2], exact[3]};
+      EXPECT_LT(std::abs(SampsonError(*pair.truth, pair.rig, there)), 1e-6);
+      Depths depths;
+      EXPECT_TRUE(TriangulateDepths(*pair.truth, MakeRayPair(pair.rig, there), &depths));
+      EXPECT_TRUE(depths.BothPositive());
+      EXPECT_TRUE(options.rig.cameras[0].intrinsics.InImage({exact[2], exact[3]}));
+      num_beyond_90 += ray.z() < 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(num_beyond_90, 0);
 }
 
 TEST(Street, MotionIsOnAnArcWithBumps) {

@@ -67,7 +67,7 @@ TEST(Synthetic, WithoutNoiseEveryMatchIsAPointInFrontAtTheStatedDepth) {
         ASSERT_TRUE(TriangulateDepths(*pair.truth, rays, &depths));
         EXPECT_TRUE(depths.BothPositive());
         // Depth is along the optical axis, the distance along the ray.
-        const Eigen::Vector3d u = pair.rig.cameras[m.camera1].intrinsics.Normalize(m.pixel1);
+        const Eigen::Vector3d u = AlongRay(pair.rig.cameras[m.camera1].intrinsics, m.pixel1);
         const double depth = depths.d1 / u.norm();
         // A match of small parallax tells its depth with few digits.
         EXPECT_GT(depth, 5.0 - 1e-4);
@@ -253,9 +253,9 @@ TEST(Synthetic, TheRigIsSpreadAsStated) {
     const FramePair pair = ScenePair(options, index);
     for (int k = 0; k < 4; ++k) {
       const RigCamera& camera = pair.rig.cameras[k];
-      const PinholeCamera& c = camera.intrinsics;
-      EXPECT_TRUE(c.fx == 400 && c.fy == 400 && c.cx == 320 && c.cy == 240 && c.width == 640 &&
-                  c.height == 480);
+      const Camera& c = camera.intrinsics;
+      EXPECT_TRUE(c.fx() == 400 && c.fy() == 400 && c.cx() == 320 && c.cy() == 240 &&
+                  c.width == 640 && c.height == 480);
       moved += (camera.s - positions[k]).squaredNorm();
       mean_moved += camera.s - positions[k];
       turned += LogSO3(camera.Q).squaredNorm();

@@ -11,6 +11,7 @@
 
 #include "rigel/core/epipolar.h"
 #include "rigel/core/rays.h"
+#include "rigel/test/core/lens_rig.h"
 #include "rigel/test/core/random_vector.h"
 #include "rigel/test/refine/jet_geometry.h"
 #include "rigel/test/refine/refine_scene.h"
@@ -39,12 +40,12 @@ T Residual(ResidualKind kind, const Matrix3<T>& R, const Vector3<T>& t, const Ri
   using std::sqrt;
   const RigCamera& i = rig.cameras[m.camera1];
   const RigCamera& j = rig.cameras[m.camera2];
-  const PinholeCamera& ci = i.intrinsics;
-  const PinholeCamera& cj = j.intrinsics;
+  const Camera& ci = i.intrinsics;
+  const Camera& cj = j.intrinsics;
   const Vector3<T> b = R * i.s.cast<T>() + t - j.s.cast<T>();
   const Matrix3<T> E = j.Q.transpose().cast<T>() * Cross<T>(b) * R * i.Q.cast<T>();
-  const Vector3<T> x_i = ci.Normalize(m.pixel1).normalized().cast<T>();
-  const Vector3<T> x_j = cj.Normalize(m.pixel2).normalized().cast<T>();
+  const Vector3<T> x_i = AlongRay(ci, m.pixel1).normalized().cast<T>();
+  const Vector3<T> x_j = AlongRay(cj, m.pixel2).normalized().cast<T>();
   switch (kind) {
     case ResidualKind::kAlgebraic:
       return x_j.dot(E * x_i);
@@ -55,14 +56,14 @@ T Residual(ResidualKind kind, const Matrix3<T>& R, const Vector3<T>& t, const Ri
       const T C = x_j.dot(by_j);
       const T gradient2 =
           (by_i - x_i * x_i.dot(by_i)).squaredNorm() + (by_j - x_j * x_j.dot(by_j)).squaredNorm();
-      return C / sqrt(gradient2) * T(0.25 * (ci.fx + ci.fy + cj.fx + cj.fy));
+      return C / sqrt(gradient2) * T(0.25 * (ci.fx() + ci.fy() + cj.fx() + cj.fy()));
     }
     case ResidualKind::kSampson:
       break;
   }
   Eigen::Matrix3d Ki, Kj;
-  Ki << ci.fx, 0, ci.cx, 0, ci.fy, ci.cy, 0, 0, 1;
-  Kj << cj.fx, 0, cj.cx, 0, cj.fy, cj.cy, 0, 0, 1;
+  Ki << ci.fx(), 0, ci.cx(), 0, ci.fy(), ci.cy(), 0, 0, 1;
+  Kj << cj.fx(), 0, cj.cx(), 0, cj.fy(), cj.cy(), 0, 0, 1;
   const Matrix3<T> F = Kj.inverse().transpose().cast<T>() * E * Ki.inverse().cast<T>();
   const Vector3<T> p = m.pixel1.homogeneous().cast<T>();
   const Vector3<T> q = m.pixel2.homogeneous().cast<T>();
@@ -134,20 +135,20 @@ TEST(EpipolarResiduals, SampsonAndAngularDivideByTheGradientOfTheConstraint) {
       const Match& m = matches.matches()[k];
       const RigCamera& ci = rig.cameras[m.camera1];
       const RigCamera& cj = rig.cameras[m.camera2];
-      const PinholeCamera& a = ci.intrinsics;
-      const PinholeCamera& b = cj.intrinsics;
-      const Vector3<Jet> u_i((Jet(m.pixel1.x(), 0) - a.cx) / a.fx,
-                             (Jet(m.pixel1.y(), 1) - a.cy) / a.fy, Jet(1.0));
-      const Vector3<Jet> u_j((Jet(m.pixel2.x(), 2) - b.cx) / b.fx,
-                             (Jet(m.pixel2.y(), 3) - b.cy) / b.fy, Jet(1.0));
+      const Camera& a = ci.intrinsics;
+      const Camera& b = cj.intrinsics;
+      const Vector3<Jet> u_i((Jet(m.pixel1.x(), 0) - a.cx()) / a.fx(),
+                             (Jet(m.pixel1.y(), 1) - a.cy()) / a.fy(), Jet(1.0));
+      const Vector3<Jet> u_j((Jet(m.pixel2.x(), 2) - b.cx()) / b.fx(),
+                             (Jet(m.pixel2.y(), 3) - b.cy()) / b.fy(), Jet(1.0));
       const Matrix3<Jet> R = pose.R.cast<Jet>();
       const Vector3<Jet> t = pose.t.cast<Jet>();
       const Jet by_pixels = Gec<Jet>(R, t, ci, cj, u_i, u_j);
       const double r = by_pixels.a / by_pixels.v.norm();
       EXPECT_NEAR(Value(sampson, pose, k), r, 1e-9 * (1 + std::abs(r)));
 
-      const Eigen::Vector3d x_i = a.Normalize(m.pixel1).normalized();
-      const Eigen::Vector3d x_j = b.Normalize(m.pixel2).normalized();
+      const Eigen::Vector3d x_i = AlongRay(a, m.pixel1).normalized();
+      const Eigen::Vector3d x_j = AlongRay(b, m.pixel2).normalized();
       const Eigen::Matrix<double, 3, 2> T_i = TangentBasis(x_i);
       const Eigen::Matrix<double, 3, 2> T_j = TangentBasis(x_j);
       Vector3<Jet> d_i, d_j;
@@ -156,7 +157,7 @@ TEST(EpipolarResiduals, SampsonAndAngularDivideByTheGradientOfTheConstraint) {
         d_j(n) = x_j(n) + T_j(n, 0) * Jet(0.0, 2) + T_j(n, 1) * Jet(0.0, 3);
       }
       const Jet by_directions = Gec<Jet>(R, t, ci, cj, d_i, d_j);
-      const double focal = 0.25 * (a.fx + a.fy + b.fx + b.fy);
+      const double focal = 0.25 * (a.fx() + a.fy() + b.fx() + b.fy());
       const double s = focal * by_directions.a / by_directions.v.norm();
       EXPECT_NEAR(Value(angular, pose, k), s, 1e-9 * (1 + std::abs(s)));
     }
@@ -234,6 +235,36 @@ TEST(EpipolarResiduals, JacobianMatchesNumericDifferentiationAlongAnyBasis) {
   }
 }
 
+TEST(EpipolarResiduals, JacobianOfAnyLensMatchesNumericDifferentiation) {
+  Random random(8);
+  std::vector<GroupLinearization> groups;
+  MotionBasis identity;
+  identity.setIdentity(6, 6);
+  for (int number = 0; number < 18; ++number) {
+    const LensRig lenses = MakeLensRig(number, &random);
+    const GroupedMatches matches(lenses.rig, UnrelatedLensMatches(lenses, 9, &random));
+    const Pose pose = RandomPose(2, &random);
+    for (const ResidualKind kind : kKinds) {
+      const EpipolarResiduals residuals(matches, kind);
+      residuals.Linearize(pose, &identity, &groups);
+      for (int k = 0; k < matches.size(); ++k) {
+        Vector6d row, numeric;
+        residuals.Evaluate(groups, k, 6, row.data());
+        for (int c = 0; c < 6; ++c) {
+          numeric(c) = CentralDifference(
+              [&](double h) {
+                const Vector6d step = h * Vector6d::Unit(c);
+                return Eigen::Matrix<double, 1, 1>(Value(residuals, Perturbed(pose, step), k));
+              },
+              1e-4)(0);
+        }
+        EXPECT_LT((row - numeric).norm(), 1e-6 * numeric.norm())
+            << "rig " << number << ", kind " << static_cast<int>(kind) << ", match " << k;
+      }
+    }
+  }
+}
+
 // Shrinking the motion of a camera at the origin of the body must gain nothing: else least squares
 // runs to zero motion.
 TEST(EpipolarResiduals, SampsonAndAngularDoNotSeeTheLengthOfTheBaseline) {
@@ -273,7 +304,7 @@ void ExpectZero(const GroupedMatches& matches, const Pose& pose) {
 TEST(EpipolarResiduals, AreZeroAtTheEpipoles) {
   Rig rig;
   rig.cameras.resize(1);
-  rig.cameras[0].intrinsics = {400, 420, 320, 240, 640, 480};
+  rig.cameras[0].intrinsics = Camera::Pinhole(400, 420, 320, 240, 640, 480);
   Match m;
   m.pixel1 = m.pixel2 = {320, 240};
   Pose pose;
@@ -305,7 +336,7 @@ TEST(EpipolarResiduals, AreZeroWhereEVanishes) {
 TEST(EpipolarResiduals, StayFiniteBesideTheEpipoleAndBesideZero) {
   Rig rig;
   rig.cameras.resize(1);
-  rig.cameras[0].intrinsics = {400, 420, 0, 0, 640, 480};
+  rig.cameras[0].intrinsics = Camera::Pinhole(400, 420, 0, 0, 640, 480);
   MotionBasis identity;
   identity.setIdentity(6, 6);
   std::vector<GroupLinearization> groups;

@@ -79,8 +79,8 @@ TEST(FundamentalDerivatives, ByTheCalibrationAreNumericOnes) {
               } else if (error < 6) {
                 c.s += step;
               } else {
-                c.intrinsics.fx *= 1.0 + h;
-                c.intrinsics.fy *= 1.0 + h;
+                c.intrinsics.parameters[0] *= 1.0 + h;
+                c.intrinsics.parameters[1] *= 1.0 + h;
               }
               return EntriesOf(GroupedMatches(rig, problem.matches), g, problem.pose, false);
             },

@@ -232,8 +232,8 @@ T EpipolarTwin(ResidualKind kind, const Motion<T>& motion, const Rig& rig, const
   // C as a triple product in f2, its derivatives by the two directions in the camera frames.
   const Vector3<T> b = motion.R * i.s.cast<T>() + motion.t - j.s.cast<T>();
   const bool pixels = kind == ResidualKind::kSampson;
-  const Eigen::Vector3d u_i = i.intrinsics.Normalize(m.pixel1);
-  const Eigen::Vector3d u_j = j.intrinsics.Normalize(m.pixel2);
+  const Eigen::Vector3d u_i = AlongRay(i.intrinsics, m.pixel1);
+  const Eigen::Vector3d u_j = AlongRay(j.intrinsics, m.pixel2);
   const Eigen::Vector3d v_i = pixels ? u_i : u_i.normalized();
   const Eigen::Vector3d v_j = pixels ? u_j : u_j.normalized();
   const Vector3<T> y = motion.R * (i.Q * v_i).cast<T>();
@@ -243,17 +243,17 @@ T EpipolarTwin(ResidualKind kind, const Motion<T>& motion, const Rig& rig, const
   const Vector3<T> by_j = j.Q.transpose().cast<T>() * b.cross(y);
   const Vector3<T> by_i = i.Q.transpose().cast<T>() * (motion.R.transpose() * z.cross(b));
   if (pixels) {
-    const T gradient2 = by_i.x() * by_i.x() / T(i.intrinsics.fx * i.intrinsics.fx) +
-                        by_i.y() * by_i.y() / T(i.intrinsics.fy * i.intrinsics.fy) +
-                        by_j.x() * by_j.x() / T(j.intrinsics.fx * j.intrinsics.fx) +
-                        by_j.y() * by_j.y() / T(j.intrinsics.fy * j.intrinsics.fy);
+    const T gradient2 = by_i.x() * by_i.x() / T(i.intrinsics.fx() * i.intrinsics.fx()) +
+                        by_i.y() * by_i.y() / T(i.intrinsics.fy() * i.intrinsics.fy()) +
+                        by_j.x() * by_j.x() / T(j.intrinsics.fx() * j.intrinsics.fx()) +
+                        by_j.y() * by_j.y() / T(j.intrinsics.fy() * j.intrinsics.fy());
     return C / sqrt(gradient2);
   }
   // On the sphere: the parts of the derivatives across the rays.
   const Vector3<T> across_i = v_i.cast<T>().cross(by_i);
   const Vector3<T> across_j = v_j.cast<T>().cross(by_j);
   const double focal =
-      (i.intrinsics.fx + i.intrinsics.fy + j.intrinsics.fx + j.intrinsics.fy) / 4.0;
+      (i.intrinsics.fx() + i.intrinsics.fy() + j.intrinsics.fx() + j.intrinsics.fy()) / 4.0;
   return C / sqrt(across_i.squaredNorm() + across_j.squaredNorm()) * T(focal);
 }
 
@@ -315,17 +315,17 @@ Eigen::Matrix<T, 4, 1> ReprojectionTwin(const Rig& rig, const Match& m, double w
                                         const Motion<T>& motion, const Vector3<T>& point) {
   const RigCamera& i = rig.cameras[m.camera1];
   const RigCamera& j = rig.cameras[m.camera2];
-  const PinholeCamera& a = i.intrinsics;
-  const PinholeCamera& b = j.intrinsics;
+  const Camera& a = i.intrinsics;
+  const Camera& b = j.intrinsics;
   const T& rho = point.z();
-  const Vector3<T> in_camera1((point.x() + T(m.pixel1.x() - a.cx)) / T(a.fx),
-                              (point.y() + T(m.pixel1.y() - a.cy)) / T(a.fy), T(1.0));
+  const Vector3<T> in_camera1((point.x() + T(m.pixel1.x() - a.cx())) / T(a.fx()),
+                              (point.y() + T(m.pixel1.y() - a.cy())) / T(a.fy()), T(1.0));
   const Vector3<T> in_f1 = i.Q.cast<T>() * in_camera1 + i.s.cast<T>() * rho;
   const Vector3<T> in_f2 = motion.R * in_f1 + motion.t * rho;
   const Vector3<T> in_camera2 = j.Q.transpose().cast<T>() * (in_f2 - j.s.cast<T>() * rho);
   Eigen::Matrix<T, 4, 1> r;
-  r << point.x(), point.y(), in_camera2.x() / in_camera2.z() * T(b.fx) + T(b.cx - m.pixel2.x()),
-      in_camera2.y() / in_camera2.z() * T(b.fy) + T(b.cy - m.pixel2.y());
+  r << point.x(), point.y(), in_camera2.x() / in_camera2.z() * T(b.fx()) + T(b.cx() - m.pixel2.x()),
+      in_camera2.y() / in_camera2.z() * T(b.fy()) + T(b.cy() - m.pixel2.y());
   return r * T(weight);
 }
 

@@ -6,6 +6,7 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
+#include "rigel/test/core/pinhole.h"
 #include "rigel/test/refine/least_squares/jacobian_twins.h"
 
 namespace rigel {
@@ -16,8 +17,8 @@ namespace {
 Rig ExactRig() {
   Rig rig;
   rig.cameras.resize(2);
-  rig.cameras[0].intrinsics = {512, 256, 320, 240, 640, 480};
-  rig.cameras[1].intrinsics = {256, 1024, 300, 200, 640, 480};
+  rig.cameras[0].intrinsics = Camera::Pinhole(512, 256, 320, 240, 640, 480);
+  rig.cameras[1].intrinsics = Camera::Pinhole(256, 1024, 300, 200, 640, 480);
   rig.cameras[0].s = {0.5, -0.25, 1.0};
   rig.cameras[1].s = {-1.5, 0.75, 0.25};
   return rig;
@@ -91,8 +92,8 @@ TEST(Jacobian, EpipolarResidualsAreFiniteNearAnEpipole) {
       const RigCamera& c2 = p.rig.cameras[m.camera2];
       const Pose& pose = p.start.pose;
       const Eigen::Vector3d b = pose.R * c1.s + pose.t - c2.s;
-      m.pixel1 = c1.intrinsics.Project(c1.Q.transpose() * (pose.R.transpose() * b));
-      m.pixel2 = c2.intrinsics.Project(c2.Q.transpose() * b);
+      m.pixel1 = ProjectPinhole(c1.intrinsics, c1.Q.transpose() * (pose.R.transpose() * b));
+      m.pixel2 = ProjectPinhole(c2.intrinsics, c2.Q.transpose() * b);
       for (const ResidualKind kind : kKinds) {
         const Row row = EpipolarRow(p.rig, m, kind, pose);
         EXPECT_TRUE(std::isfinite(row.r)) << i << At(m);
@@ -138,9 +139,9 @@ TEST(Jacobian, ZeroParallaxIsNothingSpecial) {
       const RigCamera& c1 = p.rig.cameras[m.camera1];
       const RigCamera& c2 = p.rig.cameras[m.camera2];
       const Eigen::Vector3d direction =
-          c2.Q.transpose() * (pose.R * (c1.Q * c1.intrinsics.Normalize(m.pixel1)));
+          c2.Q.transpose() * (pose.R * (c1.Q * AlongRay(c1.intrinsics, m.pixel1)));
       if (std::abs(direction.z()) < 0.1) continue;
-      m.pixel2 = c2.intrinsics.Project(direction);
+      m.pixel2 = ProjectPinhole(c2.intrinsics, direction);
       ++count;
       const auto where = [&] { return std::to_string(i) + At(m); };
       for (const ResidualKind kind : kKinds) {

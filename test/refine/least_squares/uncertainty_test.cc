@@ -15,6 +15,7 @@
 
 #include "rigel/core/epipolar.h"
 #include "rigel/refine/refine.h"
+#include "rigel/test/core/pinhole.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -234,8 +235,8 @@ TEST(Uncertainty, ParallaxIsWhatTheRotationDoesNotExplain) {
   for (Match m : pair.matches) {
     const RigCamera& camera = centred.cameras[m.camera1];
     const Eigen::Vector3d x =
-        camera.Q.transpose() * turn.R * camera.Q * camera.intrinsics.Normalize(m.pixel1);
-    m.pixel2 = camera.intrinsics.Project(x);
+        camera.Q.transpose() * turn.R * camera.Q * AlongRay(camera.intrinsics, m.pixel1);
+    m.pixel2 = ProjectPinhole(camera.intrinsics, x);
     pure.push_back(m);
   }
   const GroupedMatches still(centred, pure);
@@ -244,14 +245,14 @@ TEST(Uncertainty, ParallaxIsWhatTheRotationDoesNotExplain) {
   // One metre sideways, points straight ahead at depth d: 400 / d pixels. 80 percent are below it.
   Rig rig;
   rig.cameras.resize(1);
-  rig.cameras[0].intrinsics = {400, 400, 320, 240, 640, 480};
+  rig.cameras[0].intrinsics = Camera::Pinhole(400, 400, 320, 240, 640, 480);
   Pose sideways;
   sideways.t = {1, 0, 0};
   std::vector<Match> matches;
   for (int k = 0; k < 100; ++k) {
     Match m;
     m.pixel1 = {320, 240};
-    m.pixel2 = rig.cameras[0].intrinsics.Project({1, 0, 4.0 + k});
+    m.pixel2 = ProjectPinhole(rig.cameras[0].intrinsics, {1, 0, 4.0 + k});
     matches.push_back(m);
   }
   const GroupedMatches moved(rig, matches);
@@ -270,7 +271,7 @@ TEST(Uncertainty, ParallaxIsWhatTheRotationDoesNotExplain) {
 TEST(EpipoleWeights, AreOneHalfAtTheDistanceThatTheHeaderStates) {
   Rig rig;
   RigCamera camera;
-  camera.intrinsics = {400, 400, 320, 240, 640, 480};
+  camera.intrinsics = Camera::Pinhole(400, 400, 320, 240, 640, 480);
   rig.cameras.push_back(camera);
   Pose pose;
   pose.t = {0, 0, -1};

@@ -11,6 +11,7 @@
 #include "rigel/core/epipolar.h"
 #include "rigel/refine/estimate_motion.h"
 #include "rigel/refine/least_squares/uncertainty.h"
+#include "rigel/test/core/pinhole.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -21,7 +22,7 @@ FramePair PlanePair(double noise_px, int index) {
   Random random = Random::Stream(41, index);
   FramePair pair;
   RigCamera camera;
-  camera.intrinsics = {400.0, 400.0, 320.0, 240.0, 640, 480};
+  camera.intrinsics = Camera::Pinhole(400.0, 400.0, 320.0, 240.0, 640, 480);
   pair.rig.cameras = {camera};
   const Pose truth = {ExpSO3(DegToRad(1.0) * random.UnitVector3()), random.UnitVector3()};
   const double distance = random.Uniform(8.0, 15.0);
@@ -37,8 +38,8 @@ FramePair PlanePair(double noise_px, int index) {
     const Eigen::Vector3d X = ray / n.dot(ray), Y = truth * X;
     if (!(X.z() > 0) || !(Y.z() > 1.0)) continue;
     Match m;
-    m.pixel1 = noisy(camera.intrinsics.Project(X));
-    m.pixel2 = noisy(camera.intrinsics.Project(Y));
+    m.pixel1 = noisy(ProjectPinhole(camera.intrinsics, X));
+    m.pixel2 = noisy(ProjectPinhole(camera.intrinsics, Y));
     pair.matches.push_back(m);
   }
   pair.truth = truth;
@@ -138,8 +139,8 @@ TEST(Observability, PointsOnALineOrInOnePlaceDetermineNothing) {
       const Eigen::Vector3d P = camera.Q.transpose() * (X - camera.s);
       const Eigen::Vector3d Q = camera.Q.transpose() * (Y - camera.s);
       if (!(P.z() > 1.0) || !(Q.z() > 1.0)) continue;
-      m.pixel1 = camera.intrinsics.Project(P) + 0.5 * random.NormalVector3().head<2>();
-      m.pixel2 = camera.intrinsics.Project(Q) + 0.5 * random.NormalVector3().head<2>();
+      m.pixel1 = ProjectPinhole(camera.intrinsics, P) + 0.5 * random.NormalVector3().head<2>();
+      m.pixel2 = ProjectPinhole(camera.intrinsics, Q) + 0.5 * random.NormalVector3().head<2>();
       pair.matches.push_back(m);
     }
     const MotionEstimate e = EstimateMotion(EstimateOptions(), pair);

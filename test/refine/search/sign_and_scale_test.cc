@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "rigel/core/epipolar.h"
+#include "rigel/test/core/pinhole.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
@@ -42,8 +43,8 @@ TEST(ResolveSign, DecidesNothingWithoutParallaxOrMatches) {
   Random random(1);
   for (Match& m : pair.matches) {
     const RigCamera& camera = pair.rig.cameras[m.camera1];
-    m.pixel2 = camera.intrinsics.Project(camera.Q.transpose() * turn.R * camera.Q *
-                                         camera.intrinsics.Normalize(m.pixel1));
+    m.pixel2 = ProjectPinhole(camera.intrinsics, camera.Q.transpose() * turn.R * camera.Q *
+                                                     AlongRay(camera.intrinsics, m.pixel1));
     m.pixel2.x() += 0.5 * random.Normal();
     m.pixel2.y() += 0.5 * random.Normal();
   }

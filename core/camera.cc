@@ -1,8 +1,9 @@
-#include "rigel/core/camera_model.h"
+#include "rigel/core/camera.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "rigel/core/enum_names.h"
 #include "rigel/core/lens_distortion.h"
@@ -196,6 +197,14 @@ bool ParseCameraModel(std::string_view name, CameraModel* model) {
   return FindValue(kModelNames, name, model);
 }
 
+std::string CameraModelNames() {
+  std::string names;
+  for (const EnumName<CameraModel>& entry : kParameterNames) {
+    names += (names.empty() ? "" : ", ") + std::string(CameraModelName(entry.value));
+  }
+  return names;
+}
+
 const char* CameraParameterNames(CameraModel model) {
   const auto* entry = std::find_if(std::begin(kParameterNames), std::end(kParameterNames),
                                    [model](const auto& e) { return e.value == model; });
@@ -206,6 +215,34 @@ int NumCameraParameters(CameraModel model) {
   const std::string_view names = CameraParameterNames(model);
   if (names.empty()) return 0;
   return 1 + static_cast<int>(std::count(names.begin(), names.end(), ' '));
+}
+
+Camera Camera::Pinhole(double fx, double fy, double cx, double cy, int width, int height) {
+  return {CameraModel::kPinhole, {fx, fy, cx, cy}, width, height};
+}
+
+double Camera::fx() const { return parameters[NumShapeParameters(model)]; }
+
+double Camera::fy() const {
+  return parameters[NumShapeParameters(model) + (HasOneFocalLength(model) ? 0 : 1)];
+}
+
+double Camera::cx() const {
+  return parameters[NumShapeParameters(model) + (HasOneFocalLength(model) ? 1 : 2)];
+}
+
+double Camera::cy() const {
+  return parameters[NumShapeParameters(model) + (HasOneFocalLength(model) ? 2 : 3)];
+}
+
+Pixel Camera::PixelsPerRadian() const {
+  if (IsPinhole()) return {fx(), fy()};
+  const Lens lens = MakeLens(*this);
+  Eigen::Vector2d m;
+  Matrix2x3d J;
+  // The distortion leaves the axis as it is.
+  lens.plane.FromRay(Eigen::Vector3d::UnitZ(), &m, &J);
+  return {fx() * J(0, 0), fy() * J(1, 1)};
 }
 
 bool Camera::IsValid(std::string* error) const {
@@ -253,6 +290,20 @@ bool Unproject(const Camera& camera, const Pixel& pixel, Eigen::Vector3d* ray, M
   }
   *ray = found;
   return true;
+}
+
+Eigen::Vector3d AlongRay(const Camera& camera, const Pixel& pixel) {
+  if (camera.IsPinhole()) {
+    return {(pixel.x() - camera.cx()) / camera.fx(), (pixel.y() - camera.cy()) / camera.fy(), 1.0};
+  }
+  Eigen::Vector3d ray;
+  if (Unproject(camera, pixel, &ray, nullptr)) return ray;
+  return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+}
+
+bool SameLens(const Camera& a, const Camera& b) {
+  return a.model == b.model &&
+         std::equal(a.parameters, a.parameters + NumCameraParameters(a.model), b.parameters);
 }
 
 }  // namespace rigel
