@@ -37,7 +37,7 @@ constexpr char kUsage[] =
     "gyro, distance from the odometry, in place of those that it has. Where a sensor says\n"
     "nothing, outside its readings or in a gap of them, its lines are left out. Sigmas are those\n"
     "of the flags, with what is lost between two readings. All other lines stay the same.\n"
-    "docs/formats.md has the CSV files and what is left out.\n";
+    "docs/formats.md has the CSV files, docs/sensors.md what is left out.\n";
 
 constexpr char kMark[] = "# rigel_convert";
 
