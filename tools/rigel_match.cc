@@ -79,7 +79,8 @@ constexpr char kUsage[] =
     "  rigel_match --euroc_root=EUROC/V1_01_easy --output=DIR\n"
     "\n"
     "Matches features of consecutive frames: of each camera with itself, and of cameras whose\n"
-    "fields of view overlap. Matches are pairs of mutually nearest descriptors that pass the ratio\n"
+    "fields of view overlap. Matches are pairs of mutually nearest descriptors that pass the "
+    "ratio\n"
     "test, without a check of the geometry. Pixels are those of the images; those of EuRoC are\n"
     "undistorted. If the data set has a ground truth, the files get times, truth and gravity.\n"
     "Frames count from 0.\n";
@@ -104,7 +105,8 @@ bool CheckGivenFlags(std::string* error) {
   if (IsEuroc() && IsGiven("sequence")) {
     return Refuse("--sequence: has no effect with --euroc_root, which is one sequence", error);
   }
-  if (is_rig && FLAGS_frames != "time" && !FirstGiven({"time_unit_s", "sync_tolerance_ms"}).empty()) {
+  if (is_rig && FLAGS_frames != "time" &&
+      !FirstGiven({"time_unit_s", "sync_tolerance_ms"}).empty()) {
     return Refuse("--" + FirstGiven({"time_unit_s", "sync_tolerance_ms"}) +
                       ": has an effect with --frames=time only",
                   error);
@@ -198,10 +200,9 @@ bool SettingsFromFlags(SequenceMatchingOptions* options, DataSet* data, std::str
 // Says on stderr what the sequence lacks. False with a message if it cannot be read.
 bool ReadSequence(const DataSet& data, ImageSequence* sequence, std::string* error) {
   const bool is_rig = !FLAGS_rig.empty();
-  const bool read =
-      IsKitti()   ? ReadKittiSequence(FLAGS_kitti_root, FLAGS_sequence, sequence, error)
-      : IsEuroc() ? ReadEurocSequence(FLAGS_euroc_root, data.euroc, sequence, error)
-                  : ReadRigSequence(FLAGS_rig, data.rig, sequence, error);
+  const bool read = IsKitti() ? ReadKittiSequence(FLAGS_kitti_root, FLAGS_sequence, sequence, error)
+                    : IsEuroc() ? ReadEurocSequence(FLAGS_euroc_root, data.euroc, sequence, error)
+                                : ReadRigSequence(FLAGS_rig, data.rig, sequence, error);
   if (!read) return false;
   for (const std::string& note : sequence->notes) std::cerr << note << "\n";
   if (is_rig) return true;

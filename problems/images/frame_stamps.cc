@@ -44,9 +44,8 @@ StampFrames GroupStamps(const std::vector<Stamps>& cameras, std::optional<double
   // Nanoseconds: larger doubles cannot be converted to int64_t.
   constexpr double kMaxTolerance = 9e18;
   const int64_t tolerance =
-      tolerance_ms
-          ? static_cast<int64_t>(std::min(std::round(*tolerance_ms * 1e6), kMaxTolerance))
-          : DefaultSyncTolerance(cameras.front());
+      tolerance_ms ? static_cast<int64_t>(std::min(std::round(*tolerance_ms * 1e6), kMaxTolerance))
+                   : DefaultSyncTolerance(cameras.front());
   StampFrames result;
   result.within = Milliseconds(tolerance) +
                   (tolerance_ms ? "" : ", a tenth of the frame interval") +

@@ -108,8 +108,8 @@ bool FeatureOptions::IsValid(std::string* error) const {
 }
 
 bool ExtractFeatures(const FeatureOptions& options, const ImageCamera& camera,
-                     const std::string& path, const std::string& mask_path,
-                     ImageFeatures* features, std::string* error) try {
+                     const std::string& path, const std::string& mask_path, ImageFeatures* features,
+                     std::string* error) try {
   cv::Mat image;
   if (!ReadImage(path, &image, error)) return false;
   const Camera& c = camera.camera.intrinsics;

@@ -26,13 +26,11 @@ bool Fits(std::string_view pattern, std::string_view name, std::string_view* fra
     return false;
   }
   if (pattern.substr(0, kFrame.size()) != kFrame) {
-    return !name.empty() && name[0] == pattern[0] &&
-           Fits(pattern.substr(1), name.substr(1), frame);
+    return !name.empty() && name[0] == pattern[0] && Fits(pattern.substr(1), name.substr(1), frame);
   }
   const std::string_view rest = pattern.substr(kFrame.size());
   if (!frame->empty()) {
-    return name.substr(0, frame->size()) == *frame &&
-           Fits(rest, name.substr(frame->size()), frame);
+    return name.substr(0, frame->size()) == *frame && Fits(rest, name.substr(frame->size()), frame);
   }
   for (size_t n = name.size(); n > 0; --n) {
     *frame = name.substr(0, n);
@@ -44,8 +42,9 @@ bool Fits(std::string_view pattern, std::string_view name, std::string_view* fra
 
 bool IsImageName(const fs::path& name) {
   std::string end = name.extension().string();
-  std::transform(end.begin(), end.end(), end.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  std::transform(end.begin(), end.end(), end.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
   constexpr std::string_view kEnds[] = {".jpg", ".jpeg", ".png", ".bmp", ".tif", ".tiff",
                                         ".pgm", ".ppm",  ".pnm", ".jp2", ".webp"};
   return std::find(std::begin(kEnds), std::end(kEnds), end) != std::end(kEnds);
@@ -81,7 +80,8 @@ bool FindImages(const std::string& pattern, std::map<std::string, std::string>* 
     if (is_directory != !after.empty() || !Fits(part, name, &fits)) return;
     if (is_folder && !IsImageName(name)) return;
     const std::string frame(fits);
-    const std::string path = (fs::path(folder) / name).string() + FillField(after, kFrameField, frame);
+    const std::string path =
+        (fs::path(folder) / name).string() + FillField(after, kFrameField, frame);
     if (!after.empty() && !Exists(path)) return;
     const auto [known, is_new] = images->emplace(frame, path);
     if (is_new) return;

@@ -29,7 +29,7 @@ struct ImageFrame {
   // Paths, one a camera; whether they are there is not checked. Empty: the camera has no image, and
   // the frame consists of those of the others.
   std::vector<std::string> images;
-  std::optional<double> time;       // seconds
+  std::optional<double> time;           // seconds
   std::optional<Pose> world_from_body;  // ground truth
   std::vector<std::string> masks = {};  // paths, one a camera, empty where it has none; or no entry
 };

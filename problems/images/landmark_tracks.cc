@@ -29,9 +29,8 @@ bool TrackBuilder::Join(int a, int b) {
   if (to > from) std::swap(to, from);
   std::vector<int> both;
   both.reserve(members_[to].size() + members_[from].size());
-  std::merge(members_[to].begin(), members_[to].end(), members_[from].begin(),
-             members_[from].end(), std::back_inserter(both),
-             [this](int x, int y) { return Before(x, y); });
+  std::merge(members_[to].begin(), members_[to].end(), members_[from].begin(), members_[from].end(),
+             std::back_inserter(both), [this](int x, int y) { return Before(x, y); });
   const auto same_image = [this](int x, int y) { return SameImage(x, y); };
   if (std::adjacent_find(both.begin(), both.end(), same_image) != both.end()) return false;
   for (const int point : members_[from]) track_[point] = to;

@@ -52,8 +52,8 @@ class TrackBuilder {
 
 // A number for each of the matches of a frame pair: matches of one number are of one point.
 // `same_time1` and `same_time2` are matches between the cameras at one time. Matches of a camera
-// with itself are joined first, then the others by their score. A match that contradicts better ones
-// has a number of its own.
+// with itself are joined first, then the others by their score. A match that contradicts better
+// ones has a number of its own.
 std::vector<int64_t> LandmarkNumbers(const std::vector<Match>& matches,
                                      const std::vector<Match>& same_time1,
                                      const std::vector<Match>& same_time2);

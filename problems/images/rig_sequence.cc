@@ -259,8 +259,8 @@ class Reader {
       for (int k = 0; k < num_cameras(); ++k) {
         const std::string& key = keys_[index][k];
         const std::string camera = by_number_ ? std::to_string(k) : file_.camera_names[k];
-        const std::string mask = FillField(FillField(options_.masks, kCameraField, camera),
-                                           kFrameField, key);
+        const std::string mask =
+            FillField(FillField(options_.masks, kCameraField, camera), kFrameField, key);
         const bool is_there = !key.empty() && Exists(mask);
         frame.masks.push_back(is_there ? mask : "");
         if (!key.empty()) ++all[k];

@@ -25,7 +25,8 @@ bool ParseFrameOrder(std::string_view name, FrameOrder* order);  // "name", "ord
 
 struct RigSequenceOptions {
   // image_pattern.h. {camera} is the name of the camera in the rig file; if no camera has images
-  // by its name, its number. Empty: what the rig file names for each camera, relative to its folder.
+  // by its name, its number. Empty: what the rig file names for each camera, relative to its
+  // folder.
   std::string images;
   // As `images`, of images that are black where there shall be no features. {frame} may be absent.
   // Empty: none.

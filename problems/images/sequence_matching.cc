@@ -49,8 +49,8 @@ class SharedFeatures {
           there != nullptr ? there->images[k] : sequence.image_path(frame, static_cast<int>(k));
       if (image.empty()) continue;
       const std::string mask = there == nullptr || there->masks.empty() ? "" : there->masks[k];
-      if (!ExtractFeatures(options.features, sequence.cameras[k], image, mask,
-                           &features->images[k], &error)) {
+      if (!ExtractFeatures(options.features, sequence.cameras[k], image, mask, &features->images[k],
+                           &error)) {
         (Exists(image) ? errors_ : missing_).push_back(error);
       }
     }
@@ -189,8 +189,8 @@ void NoteMissingImages(const SequenceMatchingOptions& options, const ImageSequen
 // once.
 class PairMatcher {
  public:
-  PairMatcher(const SequenceMatchingOptions& options, const ImageSequence& sequence, std::string directory,
-              const std::vector<FrameIndices>& pairs)
+  PairMatcher(const SequenceMatchingOptions& options, const ImageSequence& sequence,
+              std::string directory, const std::vector<FrameIndices>& pairs)
       : options_(options),
         sequence_(sequence),
         directory_(std::move(directory)),
@@ -309,8 +309,8 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
 }
 
 bool WriteTracks(const SequenceMatchingOptions& options, const ImageSequence& sequence,
-                 const std::string& directory, const std::string& path,
-                 TracksSummary* summary, std::string* error) {
+                 const std::string& directory, const std::string& path, TracksSummary* summary,
+                 std::string* error) {
   *summary = TracksSummary();
   std::vector<FrameIndices> pairs;
   int ignored;

@@ -70,8 +70,8 @@ bool CameraLines::ReadCamera(MatchLines* lines) {
   return Declare(index, declared, "camera", lines, &cameras_);
 }
 
-bool CameraLines::Declare(int index, const Declared& declared, const char* what,
-                          MatchLines* lines, DeclaredCameras* cameras) {
+bool CameraLines::Declare(int index, const Declared& declared, const char* what, MatchLines* lines,
+                          DeclaredCameras* cameras) {
   const auto [known, is_new] = cameras->emplace(index, declared);
   if (is_new) return true;
   return lines->Fail(std::string(what) + " " + std::to_string(index) +
@@ -112,9 +112,10 @@ bool CameraLines::Finish(std::string_view rows, MatchLines* lines, Rig* rig) con
   }
   for (const auto& [index, declared] : cameras_) {
     if (index != rig->size()) {
-      return lines->FailAt(declared.line, "camera " + std::to_string(index) +
-                                              " without a camera " + std::to_string(rig->size()) +
-                                              ", expected cameras numbered 0, 1, ... without a gap");
+      return lines->FailAt(declared.line,
+                           "camera " + std::to_string(index) + " without a camera " +
+                               std::to_string(rig->size()) +
+                               ", expected cameras numbered 0, 1, ... without a gap");
     }
     rig->cameras.push_back(declared.camera);
   }

@@ -47,13 +47,13 @@ class CameraLines {
   std::string usage_;  // of the last camera's model
 };
 
-// The lines of a file with a header. The first keyword is that of the format, the last one announces
-// the rows.
+// The lines of a file with a header. The first keyword is that of the format, the last one
+// announces the rows.
 class HeaderLines : protected MatchLines {
  protected:
   // `what` the file is, as "a match file". All must outlive this object.
-  HeaderLines(const match_file::Keyword* keywords, int num_keywords, const char* what, std::string_view text,
-              const std::string& name, std::string* error)
+  HeaderLines(const match_file::Keyword* keywords, int num_keywords, const char* what,
+              std::string_view text, const std::string& name, std::string* error)
       : MatchLines(text, name, error),
         keywords_(keywords),
         num_keywords_(num_keywords),

@@ -16,7 +16,8 @@
 
 namespace rigel {
 
-// The lines of the text of a match file or a track file, split into columns that are converted with messages.
+// The lines of the text of a match file or a track file, split into columns that are converted with
+// messages.
 //
 // Goes once over the text and keeps no copy of it: columns are views. Messages name the file, the
 // line, the column by its word in the usage, and what was expected. Each function that returns bool

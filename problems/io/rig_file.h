@@ -7,11 +7,11 @@
 //
 // Required are `cameras`, at least one, and of each camera all but its name, its sigma, its time
 // offset and where its images are. Sigma and offset are as the lines `camera_sigma` and
-// `camera_time` of match files. q and s are body_from_camera. `model` and `parameters` are those of core/camera.h. Files without `format` may
-// state a camera by the older keys instead of `parameters`: `fx`, `fy`, `cx`, `cy` and
-// `distortion`. Their model is `pinhole`, or begins with `radial` (k1 k2 k3) or `brown`
-// (k1 k2 p1 p2 k3), which both are full_opencv, or with `equidistant` (k1 k2 k3 k4), which is
-// opencv_fisheye. Other keys are not looked at.
+// `camera_time` of match files. q and s are body_from_camera. `model` and `parameters` are those of
+// core/camera.h. Files without `format` may state a camera by the older keys instead of
+// `parameters`: `fx`, `fy`, `cx`, `cy` and `distortion`. Their model is `pinhole`, or begins with
+// `radial` (k1 k2 k3) or `brown` (k1 k2 p1 p2 k3), which both are full_opencv, or with
+// `equidistant` (k1 k2 k3 k4), which is opencv_fisheye. Other keys are not looked at.
 #ifndef RIGEL_PROBLEMS_IO_RIG_FILE_H_
 #define RIGEL_PROBLEMS_IO_RIG_FILE_H_
 

@@ -205,8 +205,8 @@ class Parser final : private HeaderLines {
     if (!Integer(1, 0, &row.frame) || !Integer(2, 0, &row.camera)) return false;
     if (frames_.count(row.frame) == 0) return FailColumn(1, "a declared frame");
     if (row.camera >= tracks_.rig.size()) {
-      return FailColumn(2, "a declared camera (0 to " + std::to_string(tracks_.rig.size() - 1) +
-                               ")");
+      return FailColumn(2,
+                        "a declared camera (0 to " + std::to_string(tracks_.rig.size() - 1) + ")");
     }
     if (!Vector(3, &row.pixel)) return false;
     double sigma;
@@ -222,7 +222,8 @@ class Parser final : private HeaderLines {
   bool CheckDistinct() {
     std::vector<std::tuple<int64_t, int, int>> keys;
     keys.reserve(tracks_.observations.size());
-    for (const Observation& o : tracks_.observations) keys.emplace_back(o.landmark, o.frame, o.camera);
+    for (const Observation& o : tracks_.observations)
+      keys.emplace_back(o.landmark, o.frame, o.camera);
     std::sort(keys.begin(), keys.end());
     const auto twice = std::adjacent_find(keys.begin(), keys.end());
     if (twice == keys.end()) return true;

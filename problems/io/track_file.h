@@ -40,9 +40,9 @@ namespace rigel {
 
 struct TrackFrame {
   int number = 0;
-  std::optional<double> time;               // seconds
-  std::optional<Pose> world_from_body;      // ground truth
-  std::optional<Eigen::Vector3d> gravity;   // unit, "down" in the body frame
+  std::optional<double> time;              // seconds
+  std::optional<Pose> world_from_body;     // ground truth
+  std::optional<Eigen::Vector3d> gravity;  // unit, "down" in the body frame
 };
 
 struct TrackDistance {

@@ -86,7 +86,7 @@ TEST_F(ImageFeaturesTest, SiftFindsTheCentresOfBlobs) {
   }
   const ImageFeatures features = Extract(Options(FeatureType::kSift), Undistorted(), image);
   std::vector<double> dx, dy;
-  for (const Eigen::Vector2d& pixel : features.pixels) {
+  for (const Pixel& pixel : features.pixels) {
     for (const Eigen::Vector2d& center : centers) {
       if ((pixel - center).norm() > 1) continue;
       dx.push_back(pixel.x() - center.x());
@@ -174,7 +174,7 @@ TEST_F(ImageFeaturesTest, APairOfPixelsOccursOnceThoughKeyPointsHaveSeveralOrien
   const ImageFeatures features = Extract(options, Undistorted(), image);
   using Key = std::tuple<double, double, double, double>;
   std::set<std::pair<double, double>> pixels;
-  for (const Eigen::Vector2d& pixel : features.pixels) pixels.insert({pixel.x(), pixel.y()});
+  for (const Pixel& pixel : features.pixels) pixels.insert({pixel.x(), pixel.y()});
   ASSERT_LT(pixels.size(), features.pixels.size()) << "no key point of several orientations";
   std::vector<Match> matches;
   AppendMatches(options, 0, features, 0, features, &matches);
@@ -263,7 +263,7 @@ TEST_F(ImageFeaturesTest, PixelsThatTheDistortionCannotReachAreDropped) {
   EXPECT_GT(rest.pixels.size(), 20u);
   EXPECT_LT(rest.pixels.size(), all);
   EXPECT_EQ(rest.descriptors.rows, static_cast<int>(rest.pixels.size()));
-  for (const Eigen::Vector2d& pixel : rest.pixels) {
+  for (const Pixel& pixel : rest.pixels) {
     EXPECT_LT(AlongRay(camera.camera.intrinsics, pixel).head<2>().norm(), 0.6);
   }
 }
