@@ -1,8 +1,8 @@
 #include "rigel/test/problems/images/plane_scene.h"
-#include "rigel/test/core/pinhole.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -109,7 +109,10 @@ Eigen::Vector2d PlaneScene::Transfer(const RigCamera& camera1, const Pose& world
   const Pose world_from_camera2 = world_from_body2 * BodyFromCamera(camera2);
   const Eigen::Vector3d X =
       Intersect(world_from_camera1.t, world_from_camera1.R * AlongRay(camera1.intrinsics, pixel1));
-  return ProjectPinhole(camera2.intrinsics, world_from_camera2.Inverse() * X);
+  Eigen::Vector2d pixel2(NAN, NAN);
+  Pixel projected;
+  if (Project(camera2.intrinsics, world_from_camera2.Inverse() * X, &projected)) pixel2 = projected;
+  return pixel2;
 }
 
 int64_t PlaneSceneTime(int frame) { return 1403715273262142976 + frame * INT64_C(50000000); }
