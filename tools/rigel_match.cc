@@ -126,9 +126,10 @@ bool RigFromFlags(RigSequenceOptions* options, std::string* error) {
   if (!ParseFrameOrder(FLAGS_frames, &options->order)) {
     return WrongValue("frames", FLAGS_frames, "name, order or time", error);
   }
+  constexpr double kMaxRounding = 1e-3;  // nanoseconds, of a unit that is a whole number of them
   const double unit_ns = FLAGS_time_unit_s * 1e9;
   options->time_unit_ns = std::llround(std::clamp(unit_ns, 0.0, 2e9));
-  if (!(std::abs(unit_ns - static_cast<double>(options->time_unit_ns)) < 1e-3) ||
+  if (!(std::abs(unit_ns - static_cast<double>(options->time_unit_ns)) < kMaxRounding) ||
       !options->IsValid(error)) {
     return Refuse("--time_unit_s: expected whole nanoseconds, 1e-9 to 1", error);
   }

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 constexpr EnumName<FrameOrder> kOrderNames[] = {
     {FrameOrder::kName, "name"}, {FrameOrder::kIndex, "order"}, {FrameOrder::kTime, "time"}};
 
-constexpr int64_t kSecond = 1'000'000'000;  // ns
+constexpr int64_t kSecond = 1'000'000'000;  // nanoseconds, by definition
 
 using Images = std::map<std::string, std::string>;  // frame, path
 
@@ -117,7 +117,7 @@ class Reader {
     for (int k = 0; k < num_cameras(); ++k) {
       if (!images_[k].empty()) continue;
       const std::string camera = by_number_ ? std::to_string(k) : file_.camera_names[k];
-      return Fail("camera " + Name(k) + ": no image fits " + Quoted(Pattern(k, camera)));
+      return Fail("camera " + Name(k) + ": no image fits '" + Printable(Pattern(k, camera)) + "'");
     }
     return true;
   }
@@ -268,7 +268,7 @@ class Reader {
       }
     }
     if (std::all_of(with.begin(), with.end(), [](size_t n) { return n == 0; })) {
-      return Fail("--masks: no file fits " + Quoted(options_.masks));
+      return Fail("--masks: no file fits '" + Printable(options_.masks) + "'");
     }
     for (int k = 0; k < num_cameras(); ++k) {
       if (with[k] == all[k]) continue;

@@ -102,7 +102,7 @@ class Parser final : private HeaderLines {
 
   bool Frame() {
     TrackFrame* frame;
-    constexpr size_t kColumns = 3;  // with a time
+    constexpr size_t kColumns = 3;  // words of the line with a time
     if (num_columns() != kColumns - 1 && !CheckColumns(kColumns)) return false;
     if (!NewFrame(&frames_, &frame)) return false;
     double time;
@@ -253,7 +253,8 @@ bool ReadTrackFile(const std::string& path, Tracks* tracks, std::string* error) 
 }
 
 std::string FormatTracks(const Tracks& tracks) {
-  constexpr size_t kHeaderBytes = 4096;  // to reserve, and of a row
+  // Bytes to reserve, both of them: a file that has more grows as it is written.
+  constexpr size_t kHeaderBytes = 4096;
   constexpr size_t kUsualRowBytes = 40;
   MatchText f(kHeaderBytes + kUsualRowBytes * tracks.observations.size());
   f.Word(kKeywords[kFormat].usage).EndLine();

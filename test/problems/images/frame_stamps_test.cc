@@ -22,12 +22,12 @@ TEST(FrameStamps, ImagesOfThreeCamerasAreFrames) {
   EXPECT_THAT(grouped.frames[2].images, ElementsAre(1, -1, 2));
   EXPECT_THAT(grouped.frames[3].images, ElementsAre(2, 1, 3));
   EXPECT_EQ(grouped.largest, 30);
-  EXPECT_EQ(grouped.setting, "sync_tolerance_ms 0.0001");
+  EXPECT_EQ(grouped.setting, "sync_tolerance_ms 1e-04");
 }
 
 TEST(FrameStamps, BeyondTheToleranceTheyAreFramesOfTheirOwn) {
   const StampFrames grouped = GroupStamps({{1000, 2000}, {1100, 2101}}, {});
-  EXPECT_THAT(grouped.within, HasSubstr("0.0001 ms, a tenth of the frame interval"));
+  EXPECT_THAT(grouped.within, HasSubstr("1e-04 ms, a tenth of the frame interval"));
   ASSERT_EQ(grouped.frames.size(), 3u);
   EXPECT_THAT(grouped.frames[0].images, ElementsAre(0, 0));
   EXPECT_THAT(grouped.frames[1].images, ElementsAre(1, -1));

@@ -119,7 +119,8 @@ int64_t PlaneSceneTime(int frame) { return 1403715273262142976 + frame * INT64_C
 
 std::string SensorYaml(const ImageCamera& camera) {
   const Camera& c = camera.camera.intrinsics;
-  const double* const d = camera.lens.value_or(c).parameters + 4;
+  const Camera lens = camera.lens.value_or(c);
+  const double* const d = lens.parameters + 4;
   std::ostringstream text;
   text.precision(17);
   text << "# Default parameters\nsensor_type: camera\ncomment: VI-Sensor\n\nT_BS:\n  cols: 4\n"
