@@ -28,7 +28,8 @@ namespace fs = std::filesystem;
 constexpr EnumName<FrameOrder> kOrderNames[] = {
     {FrameOrder::kName, "name"}, {FrameOrder::kIndex, "order"}, {FrameOrder::kTime, "time"}};
 
-constexpr int64_t kSecond = 1'000'000'000;  // nanoseconds, by definition
+// Nanoseconds: time stamps are whole numbers of them.
+constexpr int64_t kSecond = 1'000'000'000;
 
 using Images = std::map<std::string, std::string>;  // frame, path
 

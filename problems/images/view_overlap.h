@@ -10,7 +10,8 @@
 namespace rigel {
 
 // The share of the pixels of camera i, 0 to 1, whose points camera j sees too: the largest of those
-// for points at a few distances, from some metres to far away. Pixels without a ray do not count.
+// for points at a few distances, from some metres to far away. Pixels without a ray do not count,
+// nor do the corners beside the image circle of a fisheye.
 // The images have sizes.
 double ViewShare(const Rig& rig, int i, int j);
 

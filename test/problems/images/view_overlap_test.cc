@@ -1,6 +1,8 @@
 // Which cameras see the same things, with lenses of all kinds.
 #include "rigel/problems/images/view_overlap.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -49,7 +51,16 @@ TEST(ViewOverlap, CamerasBackToBackSeeNothingOfEachOther) {
   // These fisheyes do, at their borders.
   const Rig fisheyes{{At(0, 0, Fisheye()), At(180, 0, Fisheye())}};
   EXPECT_THAT(OverlappingCameras(fisheyes), ElementsAre(Pair(0, 1)));
-  EXPECT_LT(ViewShare(fisheyes, 0, 1), 0.15);
+  // The circle of 640 pixels reaches to 101 degrees; the corners do not count.
+  EXPECT_NEAR(ViewShare(fisheyes, 0, 1), 1 - std::pow(79.0 / 101, 2), 0.03);
+}
+
+TEST(ViewOverlap, CornersOfAFisheyeAreBlack) {
+  // 170 degrees across the image: in the corners the model goes on to 120.
+  Camera lens = Fisheye();
+  lens.parameters[0] = lens.parameters[1] = 320 / DegToRad(85);
+  EXPECT_THAT(OverlappingCameras({{At(0, 0, lens), At(180, 0, lens)}}), IsEmpty());
+  EXPECT_THAT(OverlappingCameras({{At(0, 0, lens), At(90, 0, lens)}}), ElementsAre(Pair(0, 1)));
 }
 
 TEST(ViewOverlap, ARingIsNeighbours) {
