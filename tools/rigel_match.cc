@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "rigel/problems/images/rig_sequence.h"
 #include "rigel/problems/images/sequence_matching.h"
 #include "rigel/problems/io/match_file.h"
+#include "rigel/tools/outputs.h"
 #include "rigel/tools/progress.h"
 #include "rigel/tools/tool.h"
 
@@ -215,6 +217,20 @@ bool ReadSequence(const DataSet& data, ImageSequence* sequence, std::string* err
   return true;
 }
 
+// False with a message if the file of the tracks is one that is read.
+bool TracksAreNoInput(const ImageSequence& sequence, std::string* error) {
+  if (FLAGS_tracks.empty()) return true;
+  std::vector<std::string> inputs;
+  if (!FLAGS_rig.empty()) inputs.push_back(FLAGS_rig);
+  for (const ImageFrame& frame : sequence.frames) {
+    for (const auto* paths : {&frame.images, &frame.masks}) {
+      std::copy_if(paths->begin(), paths->end(), std::back_inserter(inputs),
+                   [](const std::string& path) { return !path.empty(); });
+    }
+  }
+  return OutputsAreNoInputs({{"tracks", FLAGS_tracks}}, inputs, error);
+}
+
 // Says on stderr what was written and what could not be.
 void Report(const SequenceMatchingSummary& summary) {
   // Lines of messages. If the images of a whole range are missing, a few names are enough.
@@ -245,6 +261,8 @@ int Run() {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   if (!ReadSequence(data, &sequence, &error)) return Failure(error);
 
+  if (!TracksAreNoInput(sequence, &error)) return UsageError(error);
+
   std::unique_ptr<Progress> progress;
   SequenceMatchingSummary summary;
   const bool ran = MatchSequence(
@@ -256,7 +274,8 @@ int Run() {
   Report(summary);
   if (!FLAGS_tracks.empty()) {
     TracksSummary tracks;
-    if (!WriteTracks(options, sequence, FLAGS_output, FLAGS_tracks, &tracks, &error)) {
+    const std::string path = FLAGS_tracks == "-" ? "/dev/stdout" : FLAGS_tracks;
+    if (!WriteTracks(options, sequence, FLAGS_output, path, &tracks, &error)) {
       return Failure(error);
     }
     std::cerr << "wrote " << tracks.landmarks << " landmarks with " << tracks.observations

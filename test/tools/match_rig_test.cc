@@ -246,6 +246,20 @@ TEST_F(MatchRigTest, ResumeWithOtherCamerasOrFramesIsRefused) {
   EXPECT_THAT(frames.err, HasSubstr("were made with 'frame 0 '000000''"));
 }
 
+TEST_F(MatchRigTest, TracksOverwriteNoInput) {
+  const std::string data = Copy();
+  const std::string before = ReadText(data + "/rig.json");
+  for (const char* name : {"/rig.json", "/left/000002.png"}) {
+    const Outcome run = Run(data, "out", {"--tracks=" + data + name});
+    EXPECT_EXIT_CODE(run, 2);
+    EXPECT_FALSE(fs::exists(Path("out")));
+  }
+  EXPECT_EQ(ReadText(data + "/rig.json"), before);
+  const Outcome run = Run(data, "out", {"--tracks=-", "--last=1"});
+  ASSERT_EXIT_CODE(run, 0);
+  EXPECT_EQ(run.out.rfind("format rigtracks 1\n", 0), 0u);
+}
+
 TEST_F(MatchRigTest, ImagesOfAnotherSizeAreRefused) {
   const std::string data = Copy();
   WriteImage(data + "/left/000000.png", cv::Mat(120, 188, CV_8U, cv::Scalar(9)));
