@@ -44,7 +44,7 @@ class Reader {
     sequence_ = sequence;
     for (const RigCamera& camera : file_.rig.cameras) sequence->cameras.push_back({camera, {}});
     sequence->forward = file_.forward;
-    return FindPairs() && FindAll() && MakeFrames() && AddMasks() && Finish();
+    return FindPairs() && FindAll() && MakeFrames() && AddMasks() && AddNotes();
   }
 
  private:
@@ -280,8 +280,16 @@ class Reader {
     return true;
   }
 
-  // Which cameras lack images.
-  bool Finish() {
+  // Which cameras lack images, and whether times are missing.
+  bool AddNotes() {
+    const auto& cameras = file_.rig.cameras;
+    if (options_.order != FrameOrder::kTime &&
+        std::any_of(cameras.begin(), cameras.end(),
+                    [](const RigCamera& camera) { return camera.time_offset != 0; })) {
+      Note(
+          "the rig file has time offsets of cameras, but the frames have no times: without times "
+          "(--frames=time) no motion can be estimated");
+    }
     for (int k = 0; k < num_cameras(); ++k) {
       size_t missing = 0;
       std::string first;

@@ -118,6 +118,9 @@ TEST_F(RigSequence, FramesByTime) {
 
   // Its offset is taken off first.
   WriteRig({CameraJson("left"), CameraJson("right-2", R"(, "time_offset": 0.04)")});
+  options_.order = FrameOrder::kIndex;
+  EXPECT_THAT(Read().notes, Contains(HasSubstr("the rig file has time offsets of cameras, but")));
+  options_.order = FrameOrder::kTime;
   options_.sync_tolerance_ms = 0.0005;
   const ImageSequence exact = Read();
   EXPECT_EQ(exact.frames.size(), 4u);
