@@ -83,7 +83,7 @@ class Reader {
     std::string pattern = options_.images;
     if (pattern.empty()) {
       // Joining leaves an absolute path as it is.
-      pattern = (folder_ / file_.images[k]).string();
+      pattern = (folder_ / file_.camera_images[k]).string();
     }
     return FillField(pattern, kCameraField, camera);
   }
@@ -99,7 +99,7 @@ class Reader {
 
   bool FindAll() {
     for (int k = 0; k < num_cameras(); ++k) {
-      if (options_.images.empty() && file_.images[k].empty()) {
+      if (options_.images.empty() && file_.camera_images[k].empty()) {
         return Fail("--images is missing, and the rig file has no 'images' of camera " + Name(k) +
                     ": name a pattern, as '{camera}/{frame}.jpg'");
       }

@@ -46,7 +46,7 @@ TEST(RigFile, ReadsEveryField) {
   EXPECT_EQ(file.down, -Eigen::Vector3d::UnitZ());
   EXPECT_EQ(file.forward, Eigen::Vector3d::UnitX());
   EXPECT_EQ(file.camera_names, (std::vector<std::string>{"front", "1"}));
-  EXPECT_EQ(file.images, (std::vector<std::string>{"a/{frame}.png", ""}));
+  EXPECT_EQ(file.camera_images, (std::vector<std::string>{"a/{frame}.png", ""}));
   EXPECT_EQ(file.rig.cameras[1].intrinsics.parameters[7], 1e-3);
   ASSERT_EQ(file.rig.size(), 2);
   const RigCamera& camera = file.rig.cameras[0];
