@@ -18,6 +18,7 @@
 #include "rigel/problems/io/match_file.h"
 #include "rigel/tools/outputs.h"
 #include "rigel/tools/progress.h"
+#include "rigel/tools/sensor_flags.h"
 #include "rigel/tools/tool.h"
 
 DEFINE_string(rig, "", "rig file of the cameras (docs/formats.md)");
@@ -81,11 +82,11 @@ constexpr char kUsage[] =
     "  rigel_match --euroc_root=EUROC/V1_01_easy --output=DIR\n"
     "\n"
     "Matches features of consecutive frames: of each camera with itself, and of cameras whose\n"
-    "fields of view overlap. Matches are pairs of mutually nearest descriptors that pass the "
-    "ratio\n"
-    "test, without a check of the geometry. Pixels are those of the images; those of EuRoC are\n"
-    "undistorted. If the data set has a ground truth, the files get times, truth and gravity.\n"
-    "Frames count from 0.\n";
+    "fields of view overlap. Matches are pairs of mutually nearest descriptors that pass the\n"
+    "ratio test, without a check of the geometry. Pixels are those of the images; those of EuRoC\n"
+    "are undistorted. If the data set has a ground truth, the files get times, truth and gravity.\n"
+    "Frames count from 0. --attitude, --odometry and --gyro add priors from sensors, as\n"
+    "rigel_convert does.\n";
 
 bool IsKitti() { return !FLAGS_kitti_root.empty(); }
 
@@ -195,6 +196,7 @@ bool SettingsFromFlags(SequenceMatchingOptions* options, DataSet* data, std::str
   options->stride = FLAGS_stride;
   options->num_threads = FLAGS_threads;
   options->resume = FLAGS_resume;
+  if (!CheckSensorFlags(error)) return false;
   if (options->IsValid(error)) return true;
   *error = "--" + *error;
   return false;
@@ -260,8 +262,13 @@ int Run() {
   cv::setNumThreads(1);
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   if (!ReadSequence(data, &sequence, &error)) return Failure(error);
-
   if (!TracksAreNoInput(sequence, &error)) return UsageError(error);
+  SensorSource sensors;
+  if (HasSensors()) {
+    if (!sensors.Load(&error)) return Failure(error);
+    options.header_lines = [&](const FramePair& pair) { return sensors.Lines(pair); };
+    options.header_settings = SensorSource::Settings();
+  }
 
   std::unique_ptr<Progress> progress;
   SequenceMatchingSummary summary;
@@ -272,6 +279,7 @@ int Run() {
   progress.reset();
   if (!ran) return Failure(error);
   Report(summary);
+  sensors.Report();
   if (!FLAGS_tracks.empty()) {
     TracksSummary tracks;
     const std::string path = FLAGS_tracks == "-" ? "/dev/stdout" : FLAGS_tracks;

@@ -16,6 +16,7 @@
 #include "rigel/problems/io/directory.h"
 #include "rigel/problems/io/exception_message.h"
 #include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/match_header.h"
 #include "rigel/problems/io/printable.h"
 
 namespace rigel {
@@ -241,7 +242,8 @@ class PairMatcher {
       *error = Printable(path) + ": not written: " + what;
       return false;
     }
-    return WriteMatchFile(path, pair, error);
+    return options_.header_lines ? WriteMatchFile(path, pair, options_.header_lines(pair), error)
+                                 : WriteMatchFile(path, pair, error);
   }
 
   const SequenceMatchingOptions& options_;

@@ -45,6 +45,13 @@ class Parser final : private HeaderLines {
   }
 
  private:
+  // Checked only: nothing that is estimated uses it yet.
+  bool Rotation() {
+    Eigen::Vector4d q;
+    double sigma;
+    return UnitVector(1, "quaternion", &q) && SigmaDeg(5, &sigma);
+  }
+
   bool Time() {
     double t1, t2;
     if (!Number(1, &t1) || !Number(2, &t2)) return false;
@@ -97,6 +104,8 @@ class Parser final : private HeaderLines {
         return SigmaDeg(&prior.normal_sigma);
       case kForward:
         return Direction(&prior.forward);
+      case kRotation:
+        return Rotation();
       case kDistance:
         return Distance();
       case kNoise:
