@@ -178,6 +178,7 @@ void ReadCameras(const Json& cameras, RigFile* file) {
       if (json.contains("name")) where += " (" + name + ")";
       file->rig.cameras.push_back(ReadCamera(json));
       file->camera_names.push_back(name);
+      file->camera_images.push_back(json.contains("images") ? Text(json["images"], "images") : "");
     } catch (const std::exception& e) {
       Fail(where + ": " + JsonMessage(e));
     }
