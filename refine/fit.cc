@@ -305,4 +305,17 @@ double MedianResidual(const Fit& fit) {
   return errors.empty() ? -1.0 : std::sqrt(MedianInPlace(&errors));
 }
 
+double SignedMedianResidual(const GroupedMatches& matches, const MatchGroup& group,
+                            const Fit& fit) {
+  const Eigen::Matrix3d F = matches.Fundamental(group, fit.pose);
+  std::vector<double> errors;
+  errors.reserve(group.size);
+  for (int k = group.begin; k < group.begin + group.size; ++k) {
+    if (!fit.inliers[k]) continue;
+    const double C = matches.Point2(k).p.dot(F * matches.Point1(k).p);
+    errors.push_back(std::copysign(std::sqrt(fit.errors.squared[k]), C));
+  }
+  return errors.empty() ? 0.0 : MedianInPlace(&errors);
+}
+
 }  // namespace rigel

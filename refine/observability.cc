@@ -179,8 +179,7 @@ void DescribeObservability(const RefineOptions& options, const GroupedMatches& m
   const FitInformation information =
       InformationOfFit(inliers, matches, fit.errors, fit.noise, fit.pose);
   if (inliers.is_minimum) {
-    summary->rig_score =
-        RigScoreOfFit(inliers, matches, fit.noise, information.psi2_of, fit.pose);
+    summary->rig_score = RigScoreOfFit(inliers, matches, fit.noise, information.psi2_of, fit.pose);
   }
 
   summary->rig_center = point + RigCentre(matches.rig());

@@ -26,7 +26,7 @@
 #include "rigel/core/rig.h"
 #include "rigel/core/stop.h"
 #include "rigel/refine/least_squares/least_squares.h"
-#include "rigel/refine/rig_score.h"
+#include "rigel/refine/rig_doubts.h"
 
 namespace rigel {
 
@@ -145,6 +145,8 @@ struct CameraPairFit {
   // pair alone determine no more of the translation. Zero without a baseline.
   std::array<double, 3> baseline = {0, 0, 0};
   double noise_px = -1.0;  // 1 sigma, given or estimated
+  // Median of the inliers' Sampson errors with the sign of x_j . (b x R x_i), b that baseline.
+  double median_residual_px = 0.0;
 };
 
 struct RefineSummary {

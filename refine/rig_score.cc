@@ -1,64 +1,72 @@
-#include "rigel/refine/rig_score.h"
+#include "rigel/refine/rig_doubts.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <utility>
 
 #include "rigel/core/angles.h"
 #include "rigel/core/median.h"
 #include "rigel/core/statistics.h"
+#include "rigel/refine/determined_turns.h"
 
 namespace rigel {
 namespace {
 
-// The directions of turns that the matches determine, with their information.
-struct Determined {
-  explicit Determined(const Eigen::MatrixXd& information) {
-    const double least = 1.0 / std::pow(DegToRad(kMaxTurnSigmaDeg), 2);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
-    const long size = information.rows();
-    long count = 0;
-    while (count < size && eigen.eigenvalues()(size - 1 - count) > least) ++count;
-    directions = eigen.eigenvectors().rightCols(count);
-    to_turn = directions * eigen.eigenvalues().tail(count).cwiseInverse().asDiagonal();
-  }
-  Eigen::MatrixXd directions;
-  Eigen::MatrixXd to_turn;  // times the negative gradient along the directions: the turns
+// The turns that a score asks for, with their covariances.
+struct Turns {
+  Eigen::VectorXd value;
+  Eigen::MatrixXd by_noise, by_calibration;
 };
 
-double Chi2(const Eigen::VectorXd& value, const Eigen::MatrixXd& variance) {
-  return value.dot(variance.ldlt().solve(value));
+Turns TurnsOf(const RigScore& score, const DeterminedTurns& determined) {
+  const Eigen::MatrixXd& C = determined.covariance();
+  Turns turns;
+  turns.value = -C * score.gradient;
+  turns.by_noise = C * score.variance * C;
+  const Eigen::MatrixXd stated = C * score.by_calibration;
+  turns.by_calibration = std::pow(DegToRad(kUsualTurnDeg), 2) * determined.directions() *
+                         determined.directions().transpose();
+  if (stated.cols() > 0) turns.by_calibration += stated * stated.transpose();
+  return turns;
 }
 
-CameraTurn TurnOf(int camera, const Eigen::VectorXd& turns, const Eigen::MatrixXd& covariance,
-                  const Determined& determined) {
-  constexpr double kNearlyAll = 0.9;  // of a turn about an axis lies along the directions
-  CameraTurn turn;
-  turn.camera = camera;
+// Rows and columns `k` of a matrix.
+Eigen::MatrixXd Part(const Eigen::MatrixXd& matrix, const std::vector<int>& k) {
+  const long size = static_cast<long>(k.size());
+  Eigen::MatrixXd part(size, size);
+  for (long i = 0; i < size; ++i) {
+    for (long j = 0; j < size; ++j) part(i, j) = matrix(k[i], k[j]);
+  }
+  return part;
+}
+
+// Without values if none of its turns is determined.
+CameraTurn TurnOfCamera(int camera, const Turns& turns, const DeterminedTurns& determined) {
+  constexpr double kNearlyAll = 0.9;  // of the turn lies along the directions
+  CameraTurn result;
+  result.camera = camera;
   std::vector<int> known;
   for (int axis = 0; axis < 3; ++axis) {
     const int k = 3 * (camera - 1) + axis;
-    if (!(determined.directions.row(k).squaredNorm() > kNearlyAll)) continue;
-    turn.turn[axis] = turns(k);
-    turn.sigma[axis] = std::sqrt(covariance(k, k));
+    if (!(determined.directions().row(k).squaredNorm() > kNearlyAll)) continue;
+    result.turn[axis] = turns.value(k);
+    result.sigma[axis] = std::sqrt(turns.by_noise(k, k));
     known.push_back(k);
   }
-  const long size = static_cast<long>(known.size());
+  if (known.empty()) return result;
+  const int size = static_cast<int>(known.size());
   Eigen::VectorXd value(size);
-  Eigen::MatrixXd variance(size, size);
-  for (long i = 0; i < size; ++i) {
-    value(i) = turns(known[i]);
-    for (long j = 0; j < size; ++j) variance(i, j) = covariance(known[i], known[j]);
-  }
-  if (size > 0) turn.p = ChiSquaredTail(Chi2(value, variance), static_cast<int>(size));
-  return turn;
+  for (int i = 0; i < size; ++i) value(i) = turns.value(known[i]);
+  const Eigen::MatrixXd by_noise = Part(turns.by_noise, known);
+  result.p = ChiSquaredTail(Chi2(value, by_noise), size);
+  result.p_with_calibration =
+      ChiSquaredTail(Chi2(value, by_noise + Part(turns.by_calibration, known)), size);
+  return result;
 }
 
 // Sums over the pairs with their weights.
-RigScore WeightedSum(const std::vector<const RigScore*>& pairs, const std::vector<double>& weights) {
+RigScore WeightedSum(const std::vector<const RigScore*>& pairs,
+                     const std::vector<double>& weights) {
   RigScore sum = *pairs[0];
   sum.gradient.setZero();
   sum.information.setZero();
@@ -74,41 +82,53 @@ RigScore WeightedSum(const std::vector<const RigScore*>& pairs, const std::vecto
   return sum;
 }
 
-// Of each pair: what is left of its gradient at the turns of the run, and how much more that is
-// than its variance says, in the mean over the turns.
-struct Rest {
-  Eigen::VectorXd gradient;
-  double ratio = 0.0;
-};
-
-std::vector<Rest> RestsOf(const std::vector<const RigScore*>& pairs, const RigScore& run) {
-  const Determined determined(run.information);
-  const Eigen::VectorXd turns =
-      -determined.to_turn * (determined.directions.transpose() * run.gradient);
-  std::vector<Rest> rests;
-  for (const RigScore* pair : pairs) {
-    Rest rest;
-    rest.gradient = pair->gradient + pair->information * turns;
-    const Determined own(pair->information);
-    if (own.directions.cols() > 0) {
-      rest.ratio = Chi2(own.directions.transpose() * rest.gradient,
-                        own.directions.transpose() * pair->variance * own.directions) /
-                   static_cast<double>(own.directions.cols());
-    }
-    rests.push_back(std::move(rest));
-  }
+// What is left of the gradient of each pair at the turns of the run.
+std::vector<Eigen::VectorXd> RestsOf(const std::vector<const RigScore*>& pairs,
+                                     const RigScore& run) {
+  const Eigen::VectorXd turns = -DeterminedTurns(run.information).covariance() * run.gradient;
+  std::vector<Eigen::VectorXd> rests;
+  rests.reserve(pairs.size());
+  for (const RigScore* pair : pairs) rests.emplace_back(pair->gradient + pair->information * turns);
   return rests;
 }
 
-// Pairs with far larger rests than the others count less.
-std::vector<double> WeightsOf(const std::vector<Rest>& rests) {
+// Pairs whose rests are far larger than those of the others, against their variance, count less.
+std::vector<double> WeightsOf(const std::vector<const RigScore*>& pairs,
+                              const std::vector<Eigen::VectorXd>& rests) {
   constexpr double kLimit = 9.0;  // times the median
   std::vector<double> ratios;
-  for (const Rest& rest : rests) ratios.push_back(rest.ratio);
-  const double limit = kLimit * std::max(1.0, MedianInPlace(&ratios));
+  for (size_t k = 0; k < pairs.size(); ++k) {
+    const DeterminedTurns own(pairs[k]->information);
+    const double chi2 =
+        own.size() == 0 ? 0.0
+                        : Chi2(own.Along(rests[k]), own.Within(pairs[k]->variance)) / own.size();
+    ratios.push_back(std::isfinite(chi2) ? chi2 : 0.0);
+  }
+  std::vector<double> sorted = ratios;
+  const double limit = kLimit * std::max(1.0, MedianInPlace(&sorted));
   std::vector<double> weights;
-  for (const Rest& rest : rests) weights.push_back(std::sqrt(limit / std::max(limit, rest.ratio)));
+  weights.reserve(ratios.size());
+  for (const double ratio : ratios) weights.push_back(std::sqrt(limit / std::max(limit, ratio)));
   return weights;
+}
+
+// The variance of the sum of the rests, times their weights, by how they scatter (Newey and West, A
+// simple, positive semi-definite, heteroskedasticity and autocorrelation consistent covariance
+// matrix, 1987). Two pairs that follow each other share an image.
+Eigen::MatrixXd MeasuredVariance(const std::vector<Eigen::VectorXd>& rests,
+                                 const std::vector<double>& weights) {
+  constexpr size_t kLags = 2;
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(rests[0].size(), rests[0].size());
+  for (size_t k = 0; k < rests.size(); ++k) {
+    const Eigen::VectorXd rest = weights[k] * rests[k];
+    sum += rest * rest.transpose();
+    for (size_t lag = 1; lag <= std::min(kLags, k); ++lag) {
+      const Eigen::MatrixXd product = weights[k - lag] * rest * rests[k - lag].transpose();
+      sum += (1.0 - lag / (kLags + 1.0)) * (product + product.transpose());
+    }
+  }
+  const double n = static_cast<double>(rests.size());
+  return n / (n - 1.0) * sum;
 }
 
 }  // namespace
@@ -117,42 +137,24 @@ RigTest TestRig(const RigScore& score) {
   RigTest test;
   test.num_pairs = score.num_pairs;
   if (score.empty()) return test;
-  const Determined determined(score.information);
-  const Eigen::MatrixXd& along = determined.directions;
-  test.degrees_of_freedom = static_cast<int>(along.cols());
-  if (along.cols() == 0) return test;
-  const Eigen::VectorXd gradient = along.transpose() * score.gradient;
-  const Eigen::MatrixXd variance = along.transpose() * score.variance * along;
-  test.chi2 = Chi2(gradient, variance);
-  test.p = ChiSquaredTail(test.chi2, test.degrees_of_freedom);
-  if (score.by_calibration.cols() > 0) {
-    const Eigen::MatrixXd stated = along.transpose() * score.by_calibration;
-    test.p_with_calibration = ChiSquaredTail(
-        Chi2(gradient, variance + stated * stated.transpose()), test.degrees_of_freedom);
-  }
-  const Eigen::VectorXd turns = -determined.to_turn * gradient;
-  const Eigen::MatrixXd covariance =
-      determined.to_turn * variance * determined.to_turn.transpose();
+  const DeterminedTurns determined(score.information);
+  if (determined.size() == 0) return test;
+  const Turns turns = TurnsOf(score, determined);
+  const Eigen::VectorXd along = determined.Along(turns.value);
+  const Eigen::MatrixXd by_noise = determined.Within(turns.by_noise);
+  const double chi2 = Chi2(along, by_noise);
+  if (!std::isfinite(chi2)) return test;
+  test.degrees_of_freedom = determined.size();
+  test.chi2 = chi2;
+  test.p = ChiSquaredTail(chi2, determined.size());
+  test.p_with_calibration = ChiSquaredTail(
+      Chi2(along, by_noise + determined.Within(turns.by_calibration)), determined.size());
   for (int camera = 1; camera <= score.gradient.size() / 3; ++camera) {
-    CameraTurn turn = TurnOf(camera, turns, covariance, determined);
-    const bool any = std::any_of(turn.turn.begin(), turn.turn.end(),
-                                 [](const std::optional<double>& t) { return t.has_value(); });
+    const CameraTurn turn = TurnOfCamera(camera, turns, determined);
+    const bool any = turn.turn[0] || turn.turn[1] || turn.turn[2];
     if (any) test.cameras.push_back(turn);
   }
   return test;
-}
-
-Eigen::MatrixXd BlendedVariance(const RigScore& score, const Eigen::MatrixXd& measured,
-                                double share) {
-  const Determined determined(score.information);
-  const Eigen::MatrixXd& along = determined.directions;
-  if (along.cols() == 0) return score.variance;
-  const Eigen::MatrixXd model = along.transpose() * score.variance * along;
-  const Eigen::MatrixXd ratios =
-      model.ldlt().solve(Eigen::MatrixXd(along.transpose() * measured * along));
-  const double q = ratios.trace() / static_cast<double>(along.cols());
-  if (!std::isfinite(q) || !(q > 0)) return score.variance;
-  return (1.0 - share + 0.5 * share * q) * score.variance + 0.5 * share * measured;
 }
 
 RigScore ScoreOfRun(const std::vector<RigScore>& scores) {
@@ -165,25 +167,14 @@ RigScore ScoreOfRun(const std::vector<RigScore>& scores) {
   std::vector<double> weights(pairs.size(), 1.0);
   RigScore run = WeightedSum(pairs, weights);
   if (pairs.size() < 2) return run;
-  std::vector<Rest> rests;
+  std::vector<Eigen::VectorXd> rests;
   for (int round = 0; round < kRounds; ++round) {
     rests = RestsOf(pairs, run);
-    weights = WeightsOf(rests);
+    weights = WeightsOf(pairs, rests);
     run = WeightedSum(pairs, weights);
   }
-  const int lags = getenv("LAGS") ? atoi(getenv("LAGS")) : 2;
-  Eigen::MatrixXd measured = Eigen::MatrixXd::Zero(run.gradient.size(), run.gradient.size());
-  for (size_t k = 0; k < pairs.size(); ++k) {
-    const Eigen::VectorXd a = weights[k] * rests[k].gradient;
-    measured += a * a.transpose();
-    for (int lag = 1; lag <= lags && lag <= static_cast<int>(k); ++lag) {
-      const Eigen::VectorXd b = weights[k - lag] * rests[k - lag].gradient;
-      const double w = 1.0 - lag / (lags + 1.0);
-      measured += w * (a * b.transpose() + b * a.transpose());
-    }
-  }
-  measured *= static_cast<double>(pairs.size()) / static_cast<double>(pairs.size() - 1);
-  run.variance = BlendedVariance(run, measured, 1.0);
+  run.variance = BlendedVariance(DeterminedTurns(run.information), run.variance,
+                                 MeasuredVariance(rests, weights), 1.0);
   return run;
 }
 

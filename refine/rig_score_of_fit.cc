@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include <Eigen/Eigenvalues>
 
+#include "rigel/refine/determined_turns.h"
 #include "rigel/refine/least_squares/calibration_equations.h"
 #include "rigel/refine/least_squares/fundamental_derivatives.h"
 #include "rigel/refine/least_squares/loss.h"
@@ -16,15 +16,12 @@
 namespace rigel {
 namespace {
 
-using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
-
 // The inverse on the directions that have information, for any units. In the others a motion
 // changes no residual, so that there is nothing to eliminate.
 Matrix6d PseudoInverse(const Matrix6d& information) {
   constexpr double kLeast = 1e-9;
   const Vector6d scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::Matrix<double, 6, 6> scaled =
-      scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::Matrix<double, 6, 6> scaled = scale.asDiagonal() * information * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(scaled);
   Vector6d inverse = Vector6d::Zero();
   for (int k = 0; k < 6; ++k) {
@@ -130,6 +127,10 @@ class ScoreOfFit {
   Eigen::MatrixXd MeasuredVariance() const;
 
  private:
+  // So many rows give it to some percent; of more inliers every second set is taken, or every
+  // third, ...
+  static constexpr int kSample = 600;
+  std::vector<char> TakeSets(const std::vector<int>& set_of) const;
   // The derivatives of F's entries of a camera pair by the turns of the score.
   Eigen::MatrixXd Turns(size_t g) const {
     Eigen::MatrixXd turns = Eigen::MatrixXd::Zero(9, size_);
@@ -140,9 +141,7 @@ class ScoreOfFit {
     return turns;
   }
   // The same with the motion that follows them.
-  Eigen::MatrixXd Projected(size_t g) const {
-    return Turns(g) - sums_[g].by_motion * elimination_;
-  }
+  Eigen::MatrixXd Projected(size_t g) const { return Turns(g) - sums_[g].by_motion * elimination_; }
 
   void AddCalibration(RigScore* score) const;
 
@@ -164,8 +163,7 @@ void ScoreOfFit::AddCalibration(RigScore* score) const {
     const MatchGroup& group = matches_.groups()[g];
     const Eigen::MatrixXd of_pair =
         Projected(g).transpose() * sums_[g].curvature * sums_[g].by_calibration;
-    X.middleCols<kCameraErrors>(kCameraErrors * group.camera1) +=
-        of_pair.leftCols<kCameraErrors>();
+    X.middleCols<kCameraErrors>(kCameraErrors * group.camera1) += of_pair.leftCols<kCameraErrors>();
     X.middleCols<kCameraErrors>(kCameraErrors * group.camera2) +=
         of_pair.rightCols<kCameraErrors>();
   }
@@ -175,12 +173,26 @@ void ScoreOfFit::AddCalibration(RigScore* score) const {
   }
 }
 
+std::vector<char> ScoreOfFit::TakeSets(const std::vector<int>& set_of) const {
+  const long stride = std::max<long>(1, static_cast<long>(NumInliers()) / kSample);
+  std::vector<char> is_taken(set_of.size(), 0);
+  long num_sets = 0;
+  for (size_t k = 0; k < set_of.size(); ++k) {
+    const size_t first = set_of[k];
+    if (first == k) is_taken[k] = num_sets++ % stride == 0 ? 1 : 0;
+    is_taken[k] = is_taken[first];
+  }
+  return is_taken;
+}
+
 Eigen::MatrixXd ScoreOfFit::MeasuredVariance() const {
   constexpr double kMaxLeverage = 0.99;
   const std::vector<int> set_of = LinkedSets(fit_.shared, matches_.size());
+  const std::vector<char> is_taken = TakeSets(set_of);
   Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(size_, matches_.size());
   UnalignedMatrix<9> by_F;
   double residual = 0.0;
+  int num_rows = 0;
   for (size_t g = 0; g < sums_.size(); ++g) {
     const MatchGroup& group = matches_.groups()[g];
     GroupLinearization linear;
@@ -189,20 +201,23 @@ Eigen::MatrixXd ScoreOfFit::MeasuredVariance() const {
     const Eigen::MatrixXd to_score = ByColumns(Projected(g)).transpose();
     const Eigen::Matrix<double, 6, 9> to_motion = ByColumns(sums_[g].by_motion).transpose();
     for (int k = group.begin; k < group.begin + group.size; ++k) {
-      if (!(fit_.factors[k] > 0) ||
-          !DifferentiateByFundamental(linear, matches_.Point1(k), matches_.Point2(k), &residual,
+      if (!is_taken[k] || !(fit_.factors[k] > 0)) continue;
+      ++num_rows;
+      if (!DifferentiateByFundamental(linear, matches_.Point1(k), matches_.Point2(k), &residual,
                                       &by_F)) {
         continue;
       }
       const double weight = fit_.factors[k] / noise_.sigma_of[g];
-      const Vector6d by_motion = weight * (to_motion * by_F);
-      const double leverage = std::min(by_motion.dot(covariance_ * by_motion), kMaxLeverage);
+      const Vector6d by_motion = weight * to_motion.lazyProduct(by_F);
+      const double leverage =
+          std::min(by_motion.dot(covariance_.lazyProduct(by_motion)), kMaxLeverage);
       const double z = weight * residual;
       const double psi = z * LossWeight(fit_.loss, fit_.loss_scale_sigmas, z);
-      scores.col(set_of[k]) += (psi / std::sqrt(1.0 - leverage) * weight) * (to_score * by_F);
+      scores.col(set_of[k]) +=
+          psi * weight / std::sqrt(1.0 - leverage) * to_score.lazyProduct(by_F);
     }
   }
-  return scores * scores.transpose();
+  return NumInliers() / std::max(num_rows, 1) * (scores * scores.transpose());
 }
 
 }  // namespace
@@ -212,11 +227,14 @@ RigScore RigScoreOfFit(const FittedInliers& fit, const GroupedMatches& matches,
                        const Pose& pose) {
   if (matches.rig().size() < 2) return {};
   const ScoreOfFit score(fit, matches, noise, pose);
-  constexpr double kModelWeight = 300.0;  // matches
+  // Matches. The measured variance makes p too large where a score is: it counts less than half up
+  // to here.
+  constexpr double kModelWeight = 1000.0;
   RigScore result = score.Score(psi2_of);
   const double num_inliers = score.NumInliers();
-  result.variance = BlendedVariance(result, score.MeasuredVariance(),
-                                    num_inliers / (num_inliers + kModelWeight));
+  result.variance =
+      BlendedVariance(DeterminedTurns(result.information), result.variance,
+                      score.MeasuredVariance(), num_inliers / (num_inliers + kModelWeight));
   return result;
 }
 

@@ -7,7 +7,7 @@
 #include "rigel/core/grouped_matches.h"
 #include "rigel/core/pose.h"
 #include "rigel/refine/fit_information.h"
-#include "rigel/refine/rig_score.h"
+#include "rigel/refine/rig_doubts.h"
 #include "rigel/refine/search/noise_model.h"
 
 namespace rigel {

@@ -8,6 +8,7 @@
 
 #include "rigel/problems/evaluation/drift_report.h"
 #include "rigel/problems/evaluation/estimate_report.h"
+#include "rigel/problems/evaluation/rig_test_report.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/message_groups.h"
 #include "rigel/problems/io/trajectory_file.h"
@@ -121,8 +122,9 @@ Motions Estimate(const ComparisonOptions& options, const InputFiles& input) {
   };
   const auto keep = [](const FramePair& pair, MotionEstimate estimate) {
     estimate.refine.inliers = std::vector<char>();
-    return Estimated{std::move(estimate),
-                     {static_cast<int>(pair.matches.size()), HasInterCameraMatches(pair)}};
+    return Estimated{
+        std::move(estimate),
+        {static_cast<int>(pair.matches.size()), HasInterCameraMatches(pair), RigNumber(pair.rig)}};
   };
   Motions motions;
   for (BatchItem<Estimated>& item : EstimateFiles<Estimated>(options, input, keep)) {
@@ -156,6 +158,8 @@ bool ReportMotions(const EstimateReport& report, const InputFiles& input) {
   if (none) std::cerr << "no pair has a motion\n";
   ReportDoubts(FLAGS_solver, motions);
   for (const std::string& line : RigDoubtLines(report)) std::cerr << line << "\n";
+  const std::string rig = RigTestLine(TestRigOfRun(report));
+  if (!rig.empty()) std::cerr << rig << "\n";
   return !none;
 }
 

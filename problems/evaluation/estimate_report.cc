@@ -9,6 +9,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/evaluation/drift_report.h"
+#include "rigel/problems/evaluation/rig_test_report.h"
 #include "rigel/problems/io/csv.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/printable.h"
@@ -104,31 +105,6 @@ void PutUncertainty(const RefineSummary& refine, Json* entry) {
   PutKnown("relative_scale_sd", refine.relative_scale_sigma, entry);
 }
 
-// Values in degrees by the names of the turns; those that are not known are left out.
-Json TurnJson(const std::array<std::optional<double>, 3>& turn) {
-  constexpr const char* kNames[] = {"pitch", "yaw", "roll"};
-  Json json = Json::object();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (turn[axis]) json[kNames[axis]] = RadToDeg(*turn[axis]);
-  }
-  return json;
-}
-
-Json RigTestJson(const RigTest& test) {
-  Json json = {{"pairs", test.num_pairs},
-               {"chi2", test.chi2},
-               {"degrees_of_freedom", test.degrees_of_freedom},
-               {"p", test.p}};
-  if (test.p_with_calibration) json["p_with_calibration"] = *test.p_with_calibration;
-  for (const CameraTurn& turn : test.cameras) {
-    json["cameras"].push_back({{"camera", turn.camera},
-                               {"p", turn.p},
-                               {"turn_deg", TurnJson(turn.turn)},
-                               {"turn_sd_deg", TurnJson(turn.sigma)}});
-  }
-  return json;
-}
-
 void PutRefined(const MotionEstimate& e, Json* entry) {
   const RefineSummary& refine = e.refine;
   (*entry)["refined"] = MotionJson(e.pose);
@@ -142,7 +118,8 @@ void PutRefined(const MotionEstimate& e, Json* entry) {
     camera_pairs.push_back({{"cameras", {fit.camera1, fit.camera2}},
                             {"rows", fit.rows},
                             {"inliers", fit.inliers},
-                            {"noise_px", fit.noise_px}});
+                            {"noise_px", fit.noise_px},
+                            {"median_residual_px", fit.median_residual_px}});
   }
   for (const RigDoubt& doubt : e.rig_doubts) (*entry)["rig_doubts"].push_back(doubt.message);
   const RigTest test = TestRig(refine.rig_score);
@@ -347,10 +324,10 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
     }
   }
   text += pairs.empty() ? "]" : "\n  ]";
-  std::vector<RigScore> scores;
-  for (const MotionEstimate& e : report.estimates) scores.push_back(e.refine.rig_score);
-  const RigTest test = TestRig(ScoreOfRun(scores));
-  if (test.degrees_of_freedom > 0) text += ",\n  \"rig_test\": " + JsonText(RigTestJson(test), 2);
+  const RigTest test = TestRigOfRun(report);
+  if (test.degrees_of_freedom > 0) {
+    text += ",\n  \"rig_test\": " + JsonText(RigTestJson(test), -1);
+  }
   if (report.trajectories) text += ",\n  \"trajectories\": " + TrajectoriesJson(report);
   return PrintableJson(text + "\n}\n");
 }
