@@ -28,7 +28,7 @@ Json TurnJson(const std::array<std::optional<double>, 3>& turn) {
 // The turns of a camera that are not within the noise and the usual errors of a calibration, the
 // largest one if that can be said of none. " pitch -0.022 +- 0.001 deg, roll ...".
 std::string TurnText(const CameraTurn& camera) {
-  constexpr double kSigmas = 3.0;
+  constexpr double kSigmas = 3.0;  // of the noise, and of what every calibration is off by
   std::string text, largest;
   double most = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -48,7 +48,7 @@ std::string TurnText(const CameraTurn& camera) {
 }
 
 std::string ProbabilityText(double p) {
-  constexpr double kLeast = 1e-9;
+  constexpr double kLeast = 1e-9;  // a smaller probability means the same to a reader
   char text[32];
   std::snprintf(text, sizeof(text), p < kLeast ? "p < 1e-9" : "p = %.1g", p);
   return text;

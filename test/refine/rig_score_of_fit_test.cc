@@ -1,6 +1,6 @@
 // The test of a rig: its score against numeric differentiation, what it says of a right rig and of
 // a wrong one, and sums over runs.
-#include "rigel/refine/rig_doubts.h"
+#include "rigel/refine/rig_score_of_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <Eigen/Cholesky>
 
 #include "rigel/core/epipolar.h"
-#include "rigel/refine/rig_score_of_fit.h"
+#include "rigel/refine/rig_doubts.h"
 #include "rigel/test/refine/refine_scene.h"
 
 namespace rigel {
