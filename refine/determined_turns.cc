@@ -21,13 +21,12 @@ DeterminedTurns::DeterminedTurns(const Eigen::MatrixXd& information) {
 
 double Chi2(const Eigen::VectorXd& x, const Eigen::MatrixXd& V) { return x.dot(V.ldlt().solve(x)); }
 
-Eigen::MatrixXd BlendedVariance(const DeterminedTurns& turns, const Eigen::MatrixXd& model,
-                                const Eigen::MatrixXd& measured, double share) {
-  if (turns.size() == 0) return model;
+double MeanRatio(const DeterminedTurns& turns, const Eigen::MatrixXd& measured,
+                 const Eigen::MatrixXd& model) {
+  if (turns.size() == 0) return 1.0;
   const Eigen::MatrixXd ratios = turns.Within(model).ldlt().solve(turns.Within(measured));
   const double q = ratios.trace() / turns.size();
-  if (!std::isfinite(q) || !(q > 0)) return model;
-  return (1.0 - share + 0.5 * share * q) * model + 0.5 * share * measured;
+  return std::isfinite(q) && q > 0 ? q : 1.0;
 }
 
 }  // namespace rigel

@@ -31,12 +31,10 @@ class DeterminedTurns {
 // x' V^-1 x.
 double Chi2(const Eigen::VectorXd& x, const Eigen::MatrixXd& V);
 
-// The variance of a score, which is that of a model, mixed with one that was measured. The model
-// has the right shape, and the measured one the right size, for noise that is of another kind. With
-// `share` 1 half is q times the model, where q is the mean ratio of the two, and half is what was
-// measured; with 0 it is the model.
-Eigen::MatrixXd BlendedVariance(const DeterminedTurns& turns, const Eigen::MatrixXd& model,
-                                const Eigen::MatrixXd& measured, double share);
+// The mean ratio of two variances of a score over the turns that are determined; 1 if there is
+// none.
+double MeanRatio(const DeterminedTurns& turns, const Eigen::MatrixXd& measured,
+                 const Eigen::MatrixXd& model);
 
 }  // namespace rigel
 

@@ -104,10 +104,10 @@ inline constexpr double kUsualTurnDeg = 0.002;
 
 RigTest TestRig(const RigScore& score);
 
-// The sum over the frame pairs of a run in their order, all of one rig. Errors that the matches of a
-// pair have in common are not in its variance. So the variance of the sum is measured, too: by how
-// the scores of the pairs scatter about the turns of the run. Pairs that follow each other may
-// scatter alike. Pairs that are far off count less.
+// The sum over the frame pairs of a run in their order, all of one rig. Errors that the matches of
+// a pair have in common are not in its variance. So the variance of the sum is measured, too: by
+// how the scores of the pairs scatter about the turns of the run. Pairs that follow each other may
+// scatter alike. Pairs that are far off count less. A score of another shape is left out.
 RigScore ScoreOfRun(const std::vector<RigScore>& pairs);
 
 }  // namespace rigel

@@ -64,6 +64,12 @@ CameraTurn TurnOfCamera(int camera, const Turns& turns, const DeterminedTurns& d
   return result;
 }
 
+// Whether two scores can be of one rig.
+bool SameShape(const RigScore& a, const RigScore& b) {
+  return a.gradient.size() == b.gradient.size() &&
+         a.by_calibration.cols() == b.by_calibration.cols();
+}
+
 // Sums over the pairs with their weights.
 RigScore WeightedSum(const std::vector<const RigScore*>& pairs,
                      const std::vector<double>& weights) {
@@ -127,8 +133,9 @@ Eigen::MatrixXd MeasuredVariance(const std::vector<Eigen::VectorXd>& rests,
       sum += (1.0 - lag / (kLags + 1.0)) * (product + product.transpose());
     }
   }
+  // Less their mean, the rests scatter less.
   const double n = static_cast<double>(rests.size());
-  return n / (n - 1.0) * sum;
+  return n / std::max(n - kLags - 1.0, 1.0) * sum;
 }
 
 }  // namespace
@@ -161,7 +168,7 @@ RigScore ScoreOfRun(const std::vector<RigScore>& scores) {
   constexpr int kRounds = 5;
   std::vector<const RigScore*> pairs;
   for (const RigScore& score : scores) {
-    if (!score.empty()) pairs.push_back(&score);
+    if (!score.empty() && (pairs.empty() || SameShape(score, *pairs[0]))) pairs.push_back(&score);
   }
   if (pairs.empty()) return {};
   std::vector<double> weights(pairs.size(), 1.0);
@@ -173,8 +180,14 @@ RigScore ScoreOfRun(const std::vector<RigScore>& scores) {
     weights = WeightsOf(pairs, rests);
     run = WeightedSum(pairs, weights);
   }
-  run.variance = BlendedVariance(DeterminedTurns(run.information), run.variance,
-                                 MeasuredVariance(rests, weights), 1.0);
+  // Of the right size in the mean over the turns; few pairs may scatter too little by chance. Its
+  // shape is that of the model where the pairs are few for the number of turns.
+  constexpr double kPairsOfATurn = 5.0;
+  const Eigen::MatrixXd measured = MeasuredVariance(rests, weights);
+  const DeterminedTurns turns(run.information);
+  const double q = std::max(1.0, MeanRatio(turns, measured, run.variance));
+  const double share = pairs.size() / (pairs.size() + kPairsOfATurn * turns.size());
+  run.variance = (1.0 - 0.5 * share) * q * run.variance + 0.5 * share * measured;
   return run;
 }
 

@@ -227,15 +227,17 @@ RigScore RigScoreOfFit(const FittedInliers& fit, const GroupedMatches& matches,
                        const Pose& pose) {
   if (matches.rig().size() < 2) return {};
   const ScoreOfFit score(fit, matches, noise, pose);
-  // Matches. The measured variance makes p too large where a score is: it counts less than half up
-  // to here.
-  constexpr double kModelWeight = 1000.0;
+  // The model has the right shape, and the measured variance the right size, for noise that is of
+  // another kind: of many matches half is q times the model, half is what was measured. From so
+  // many on the latter counts half of that: it makes p too large where the score is large.
+  constexpr double kModelWeight = 1000.0;  // matches
   RigScore result = score.Score(psi2_of);
+  const Eigen::MatrixXd measured = score.MeasuredVariance();
+  const double q = MeanRatio(DeterminedTurns(result.information), measured, result.variance);
   const double num_inliers = score.NumInliers();
-  result.variance =
-      BlendedVariance(DeterminedTurns(result.information), result.variance,
-                      score.MeasuredVariance(), num_inliers / (num_inliers + kModelWeight));
-  return result;
+  const double share = num_inliers / (num_inliers + kModelWeight);
+  result.variance = (1.0 - share + 0.5 * share * q) * result.variance + 0.5 * share * measured;
+  return result.gradient.allFinite() && result.variance.allFinite() ? result : RigScore();
 }
 
 }  // namespace rigel

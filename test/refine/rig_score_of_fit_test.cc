@@ -167,6 +167,14 @@ std::vector<RigScore> DrawnScores(int count, const Eigen::VectorXd& turns, doubl
   return scores;
 }
 
+TEST(RigScore, ScoresOfOtherRigsAreLeftOut) {
+  Random random(1);
+  std::vector<RigScore> scores = DrawnScores(3, Eigen::VectorXd::Zero(3), 1.0, &random);
+  scores.push_back(DrawnScores(1, Eigen::VectorXd::Zero(6), 1.0, &random)[0]);
+  scores.emplace_back();
+  EXPECT_EQ(ScoreOfRun(scores).num_pairs, 3);
+}
+
 // Also if the scores scatter by more than they state.
 TEST(RigScore, OfRunsWithARightRigTheProbabilitiesAreUniform) {
   constexpr int kRuns = 400, kPairs = 50;
