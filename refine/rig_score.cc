@@ -2,15 +2,51 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "rigel/core/angles.h"
 #include "rigel/core/median.h"
 #include "rigel/core/statistics.h"
-#include "rigel/refine/determined_turns.h"
+#include "rigel/refine/rig_score_of_fit.h"
 
 namespace rigel {
 namespace {
+
+// The turns that the matches determine, of all those that a score has.
+class DeterminedTurns {
+ public:
+  explicit DeterminedTurns(const Eigen::MatrixXd& information);
+
+  int size() const { return static_cast<int>(directions_.cols()); }
+  // Orthonormal directions of turns.
+  const Eigen::MatrixXd& directions() const { return directions_; }
+  // Along the directions: the inverse of the information. Times the negative gradient: the turns.
+  const Eigen::MatrixXd& covariance() const { return covariance_; }
+
+  // Parts along the directions.
+  Eigen::VectorXd Along(const Eigen::VectorXd& v) const { return directions_.transpose() * v; }
+  Eigen::MatrixXd Within(const Eigen::MatrixXd& m) const {
+    return directions_.transpose() * m * directions_;
+  }
+
+ private:
+  Eigen::MatrixXd directions_, covariance_;
+};
+
+DeterminedTurns::DeterminedTurns(const Eigen::MatrixXd& information) {
+  const double least = 1.0 / std::pow(DegToRad(kMaxTurnSigmaDeg), 2);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+  const Eigen::VectorXd& values = eigen.eigenvalues();  // ascending
+  const long count = (values.array() > least).count();
+  directions_ = eigen.eigenvectors().rightCols(count);
+  covariance_ =
+      directions_ * values.tail(count).cwiseInverse().asDiagonal() * directions_.transpose();
+}
+
+// x' V^-1 x.
+double Chi2(const Eigen::VectorXd& x, const Eigen::MatrixXd& V) { return x.dot(V.ldlt().solve(x)); }
 
 // The turns that a score asks for, with their covariances.
 struct Turns {
@@ -103,12 +139,9 @@ std::vector<double> WeightsOf(const std::vector<const RigScore*>& pairs,
                               const std::vector<Eigen::VectorXd>& rests) {
   constexpr double kLimit = 9.0;  // times the median
   std::vector<double> ratios;
+  ratios.reserve(pairs.size());
   for (size_t k = 0; k < pairs.size(); ++k) {
-    const DeterminedTurns own(pairs[k]->information);
-    const double chi2 =
-        own.size() == 0 ? 0.0
-                        : Chi2(own.Along(rests[k]), own.Within(pairs[k]->variance)) / own.size();
-    ratios.push_back(std::isfinite(chi2) ? chi2 : 0.0);
+    ratios.push_back(MeanRatio(rests[k].cwiseAbs2(), pairs[k]->variance.diagonal()));
   }
   std::vector<double> sorted = ratios;
   const double limit = kLimit * std::max(1.0, MedianInPlace(&sorted));
@@ -185,7 +218,7 @@ RigScore ScoreOfRun(const std::vector<RigScore>& scores) {
   constexpr double kPairsOfATurn = 5.0;
   const Eigen::MatrixXd measured = MeasuredVariance(rests, weights);
   const DeterminedTurns turns(run.information);
-  const double q = std::max(1.0, MeanRatio(turns, measured, run.variance));
+  const double q = std::max(1.0, MeanRatio(measured.diagonal(), run.variance.diagonal()));
   const double share = pairs.size() / (pairs.size() + kPairsOfATurn * turns.size());
   run.variance = (1.0 - 0.5 * share) * q * run.variance + 0.5 * share * measured;
   return run;

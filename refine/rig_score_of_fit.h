@@ -19,6 +19,10 @@ RigScore RigScoreOfFit(const FittedInliers& fit, const GroupedMatches& matches,
                        const NoiseModel& noise, const std::vector<double>& psi2_of,
                        const Pose& pose);
 
+// The mean of the ratios of variances; those of turns of which nothing is known are left out. 1 if
+// there is none.
+double MeanRatio(const Eigen::VectorXd& measured, const Eigen::VectorXd& model);
+
 }  // namespace rigel
 
 #endif  // RIGEL_REFINE_RIG_SCORE_OF_FIT_H_

@@ -134,6 +134,7 @@ Motions Estimate(const ComparisonOptions& options, const InputFiles& input) {
     motions.report.matches.push_back(item.result.matches);
     motions.report.estimates.push_back(std::move(item.result.estimate));
   }
+  motions.report.rig_test = TestRigOfRun(motions.report);
   motions.report.refined = options.estimate.refine_motion;
   std::vector<std::string> output_flags = OutputFlags();
   output_flags.insert(output_flags.end(),
@@ -158,7 +159,7 @@ bool ReportMotions(const EstimateReport& report, const InputFiles& input) {
   if (none) std::cerr << "no pair has a motion\n";
   ReportDoubts(FLAGS_solver, motions);
   for (const std::string& line : RigDoubtLines(report)) std::cerr << line << "\n";
-  const std::string rig = RigTestLine(TestRigOfRun(report));
+  const std::string rig = RigTestLine(report.rig_test);
   if (!rig.empty()) std::cerr << rig << "\n";
   return !none;
 }

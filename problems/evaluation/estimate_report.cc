@@ -324,9 +324,8 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
     }
   }
   text += pairs.empty() ? "]" : "\n  ]";
-  const RigTest test = TestRigOfRun(report);
-  if (test.degrees_of_freedom > 0) {
-    text += ",\n  \"rig_test\": " + JsonText(RigTestJson(test), -1);
+  if (report.rig_test.degrees_of_freedom > 0) {
+    text += ",\n  \"rig_test\": " + JsonText(RigTestJson(report.rig_test), -1);
   }
   if (report.trajectories) text += ",\n  \"trajectories\": " + TrajectoriesJson(report);
   return PrintableJson(text + "\n}\n");

@@ -27,6 +27,7 @@ struct EstimateReport {
   std::vector<FramePair> pairs;  // their rigs and matches are not used
   std::vector<MatchCount> matches;
   std::vector<MotionEstimate> estimates;
+  RigTest rig_test;  // TestRigOfRun() of these
   // The chained motions, if requested. `refined`: Trajectory::estimate is refined.
   std::optional<std::vector<Trajectory>> trajectories;
   bool refined = true;
