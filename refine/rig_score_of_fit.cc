@@ -187,7 +187,7 @@ void ScoreOfFit::AddCalibration(RigScore* score) const {
 // Of each match the number of its set in the sample; -1: not there. So many rows give the variance
 // to a tenth; of more inliers every second set is taken, or every third, ...
 std::vector<int> ScoreOfFit::SampledSets(int* num_sampled) const {
-  constexpr int kSample = 200;
+  constexpr int kSample = 100;
   const long stride = std::max<long>(1, static_cast<long>(num_inliers_) / kSample);
   std::vector<int> sets = LinkedSets(fit_.shared, matches_.size());
   long num_sets = 0;
