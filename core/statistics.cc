@@ -37,6 +37,19 @@ std::optional<Statistics> ComputeStatistics(std::vector<double> values) {
   return s;
 }
 
+// From k - 2 to k degrees of freedom it grows by (x/2)^(k/2-1) e^(-x/2) / Gamma(k/2).
+double ChiSquaredTail(double value, int degrees_of_freedom) {
+  const double half = 0.5 * std::max(value, 0.0);
+  const bool odd = degrees_of_freedom % 2 != 0;
+  double tail = odd ? std::erfc(std::sqrt(half)) : std::exp(-half);
+  double term = odd ? std::exp(-half) * std::sqrt(half) / std::tgamma(1.5) : std::exp(-half) * half;
+  for (int k = odd ? 3 : 4; k <= degrees_of_freedom; k += 2) {
+    tail += term;
+    term *= half / (0.5 * k);
+  }
+  return tail;
+}
+
 std::optional<double> Efficiency(const std::optional<Statistics>& error,
                                  const std::optional<Statistics>& bound) {
   if (!error || !bound || !(bound->rms > 0)) return std::nullopt;

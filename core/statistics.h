@@ -22,6 +22,9 @@ double QuartileDistance(std::vector<double> values);
 // count is the mean of the middle two; p90 is interpolated linearly.
 std::optional<Statistics> ComputeStatistics(std::vector<double> values);
 
+// The probability that chi2 with that many degrees of freedom (>= 1) exceeds `value`.
+double ChiSquaredTail(double value, int degrees_of_freedom);
+
 // The median; nullopt if there are no statistics.
 inline std::optional<double> MedianOf(const std::optional<Statistics>& statistics) {
   return statistics ? std::optional<double>(statistics->median) : std::nullopt;

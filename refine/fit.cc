@@ -305,4 +305,18 @@ double MedianResidual(const Fit& fit) {
   return errors.empty() ? -1.0 : std::sqrt(MedianInPlace(&errors));
 }
 
+double SignedMedianResidual(const GroupedMatches& matches, const MatchGroup& group,
+                            const Fit& fit) {
+  constexpr int kSample = 200;  // rows: they give the median to a tenth of the noise
+  const int stride = std::max(1, group.size / kSample);
+  const Eigen::Matrix3d F = matches.Fundamental(group, fit.pose);
+  std::vector<double> errors;
+  for (int k = group.begin; k < group.begin + group.size; k += stride) {
+    if (!fit.inliers[k]) continue;
+    const double C = matches.Point2(k).p.dot(F * matches.Point1(k).p);
+    errors.push_back(std::copysign(std::sqrt(fit.errors.squared[k]), C));
+  }
+  return errors.empty() ? 0.0 : MedianInPlace(&errors);
+}
+
 }  // namespace rigel

@@ -102,6 +102,8 @@ class Fitter {
 
 // Median |Sampson error| of the inliers, pixels; -1 without inliers.
 double MedianResidual(const Fit& fit);
+// Of a sample of one camera pair, with the sign of x_j . (b x R x_i); 0 without inliers.
+double SignedMedianResidual(const GroupedMatches& matches, const MatchGroup& group, const Fit& fit);
 
 }  // namespace rigel
 

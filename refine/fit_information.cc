@@ -189,22 +189,10 @@ Matrix6d Blend(const Matrix6d& model, const Matrix6d& measured, double num_inlie
   return (1.0 - share + 0.5 * share * q) * model + 0.5 * share * measured;
 }
 
-// Of camera k: the variances of its errors.
-Eigen::Matrix<double, kCameraErrors, 1> VariancesOf(const RigCamera& camera) {
-  Eigen::Matrix<double, kCameraErrors, 1> variances;
-  variances.head<3>().setConstant(camera.rotation_sigma * camera.rotation_sigma);
-  variances.segment<3>(3).setConstant(camera.position_sigma * camera.position_sigma);
-  variances(6) = camera.focal_sigma * camera.focal_sigma;
-  return variances;
-}
-
 void AddCalibration(const FittedInliers& fit, const GroupedMatches& matches,
                     const NoiseModel& noise, const Pose& pose, FitInformation* information) {
   const std::vector<RigCamera>& cameras = matches.rig().cameras;
-  if (std::all_of(cameras.begin(), cameras.end(),
-                  [](const RigCamera& camera) { return VariancesOf(camera).isZero(0.0); })) {
-    return;
-  }
+  if (!StatesCalibrationErrors(matches.rig())) return;
   CalibrationDerivatives& by_calibration = information->by_calibration;
   by_calibration.setZero(6, kCameraErrors * matches.rig().size());
   for (size_t g = 0; g < matches.groups().size(); ++g) {
@@ -217,7 +205,7 @@ void AddCalibration(const FittedInliers& fit, const GroupedMatches& matches,
   }
   for (size_t k = 0; k < cameras.size(); ++k) {
     const auto X = by_calibration.middleCols<kCameraErrors>(static_cast<long>(k) * kCameraErrors);
-    information->calibration += X * VariancesOf(cameras[k]).asDiagonal() * X.transpose();
+    information->calibration += X * CalibrationVariances(cameras[k]).asDiagonal() * X.transpose();
   }
 }
 
@@ -274,6 +262,7 @@ FitInformation InformationOfFit(const FittedInliers& fit, const GroupedMatches& 
                               ? CurvatureAt(fit, matches, noise, pose)
                               : Matrix6d(information.observed - information.noise);
   AddCalibration(fit, matches, noise, pose, &information);
+  information.psi2_of = v_of;
   return information;
 }
 

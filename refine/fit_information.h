@@ -34,6 +34,7 @@ struct FitInformation {
   Matrix6d observed = Matrix6d::Zero();  // sum J'J / sigma^2
   // The part of it that the noise of the pixels makes (noise_information.h).
   Matrix6d noise = Matrix6d::Zero();
+  std::vector<double> psi2_of;  // v of each camera pair
   // The derivatives of g by the errors of the calibration, kCameraErrors for each camera
   // (fundamental_derivatives.h), and what those that are stated add to Var g: X E X' for a
   // diagonal E. Without columns if no error is stated.

@@ -15,6 +15,7 @@
 #include "rigel/refine/fit_information.h"
 #include "rigel/refine/least_squares/fundamental_derivatives.h"
 #include "rigel/refine/least_squares/uncertainty.h"
+#include "rigel/refine/rig_score_of_fit.h"
 
 namespace rigel {
 namespace {
@@ -194,6 +195,9 @@ void DescribeObservability(const RefineOptions& options, const GroupedMatches& m
   }
   const FitInformation information =
       InformationOfFit(inliers, matches, fit.errors, fit.noise, fit.pose);
+  if (inliers.is_minimum) {
+    summary->rig_score = RigScoreOfFit(inliers, matches, fit.noise, information.psi2_of, fit.pose);
+  }
 
   summary->rig_center = point + RigCentre(matches.rig());
   const Eigen::Vector3d b = MotionOfPoint(body, summary->rig_center).t;

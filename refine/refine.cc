@@ -324,6 +324,7 @@ void Refiner::CountCameraPairs() {
     pair.rows = group.size;
     pair.noise_px = fit_.noise.sigma_of[g];
     for (int k = group.begin; k < group.begin + group.size; ++k) pair.inliers += fit_.inliers[k];
+    pair.median_residual_px = SignedMedianResidual(matches_, group, fit_);
     const Eigen::Vector3d b =
         fit_.pose.R * cameras[group.camera1].s + fit_.pose.t - cameras[group.camera2].s;
     const double norm = b.norm();

@@ -26,6 +26,7 @@
 #include "rigel/core/rig.h"
 #include "rigel/core/stop.h"
 #include "rigel/refine/least_squares/least_squares.h"
+#include "rigel/refine/rig_doubts.h"
 
 namespace rigel {
 
@@ -144,6 +145,8 @@ struct CameraPairFit {
   // pair alone determine no more of the translation. Zero without a baseline.
   std::array<double, 3> baseline = {0, 0, 0};
   double noise_px = -1.0;  // 1 sigma, given or estimated
+  // Median of the inliers' Sampson errors with the sign of x_j . (b x R x_i), b that baseline.
+  double median_residual_px = 0.0;
 };
 
 struct RefineSummary {
@@ -177,6 +180,8 @@ struct RefineSummary {
   // Q <- Exp(d) Q (radians), the shift e of s <- s + e (metres), the growth of the focal lengths.
   std::optional<Matrix6d> calibration_covariance;
   std::vector<UnalignedMatrix<6, 7>> calibration_gain;
+  // Whether the cameras are turned as the rig says: TestRig().
+  RigScore rig_score;
   // Another motion of the body that fits as well within what the noise allows: a plane that one
   // camera sees has two. Where the two differ by more than the standard deviations, nothing that
   // differs is observable. Looked for among the motions that the search found.

@@ -6,8 +6,10 @@
 #include <string>
 #include <utility>
 
+#include "rigel/core/frame_pair.h"
 #include "rigel/core/pixel_unit.h"
 #include "rigel/refine/least_squares/uncertainty.h"
+#include "rigel/refine/refine.h"
 
 namespace rigel {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "rigel/problems/evaluation/drift_report.h"
 #include "rigel/problems/evaluation/estimate_report.h"
+#include "rigel/problems/evaluation/rig_test_report.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/message_groups.h"
 #include "rigel/problems/io/trajectory_file.h"
@@ -121,8 +122,9 @@ Motions Estimate(const ComparisonOptions& options, const InputFiles& input) {
   };
   const auto keep = [](const FramePair& pair, MotionEstimate estimate) {
     estimate.refine.inliers = std::vector<char>();
-    return Estimated{std::move(estimate),
-                     {static_cast<int>(pair.matches.size()), HasInterCameraMatches(pair)}};
+    return Estimated{
+        std::move(estimate),
+        {static_cast<int>(pair.matches.size()), HasInterCameraMatches(pair), RigNumber(pair.rig)}};
   };
   Motions motions;
   for (BatchItem<Estimated>& item : EstimateFiles<Estimated>(options, input, keep)) {
@@ -132,6 +134,7 @@ Motions Estimate(const ComparisonOptions& options, const InputFiles& input) {
     motions.report.matches.push_back(item.result.matches);
     motions.report.estimates.push_back(std::move(item.result.estimate));
   }
+  motions.report.rig_test = TestRigOfRun(motions.report);
   motions.report.refined = options.estimate.refine_motion;
   std::vector<std::string> output_flags = OutputFlags();
   output_flags.insert(output_flags.end(),
@@ -156,6 +159,8 @@ bool ReportMotions(const EstimateReport& report, const InputFiles& input) {
   if (none) std::cerr << "no pair has a motion\n";
   ReportDoubts(FLAGS_solver, motions);
   for (const std::string& line : RigDoubtLines(report)) std::cerr << line << "\n";
+  const std::string rig = RigTestLine(report.rig_test);
+  if (!rig.empty()) std::cerr << rig << "\n";
   return !none;
 }
 

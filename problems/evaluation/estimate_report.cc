@@ -9,6 +9,7 @@
 
 #include "rigel/core/angles.h"
 #include "rigel/problems/evaluation/drift_report.h"
+#include "rigel/problems/evaluation/rig_test_report.h"
 #include "rigel/problems/io/csv.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/printable.h"
@@ -118,9 +119,12 @@ void PutRefined(const MotionEstimate& e, Json* entry) {
     camera_pairs.push_back({{"cameras", {fit.camera1, fit.camera2}},
                             {"rows", fit.rows},
                             {"inliers", fit.inliers},
-                            {"noise_px", fit.noise_px}});
+                            {"noise_px", fit.noise_px},
+                            {"median_residual_px", fit.median_residual_px}});
   }
   for (const RigDoubt& doubt : e.rig_doubts) (*entry)["rig_doubts"].push_back(doubt.message);
+  const RigTest test = TestRig(refine.rig_score);
+  if (test.degrees_of_freedom > 0) (*entry)["rig_test"] = RigTestJson(test);
   if (refine.other_motion) (*entry)["other_motion"] = MotionJson(*refine.other_motion);
   PutUncertainty(refine, entry);
 }
@@ -321,6 +325,9 @@ std::string EstimateJson(const EstimateReport& report, bool times) {
     }
   }
   text += pairs.empty() ? "]" : "\n  ]";
+  if (report.rig_test.degrees_of_freedom > 0) {
+    text += ",\n  \"rig_test\": " + JsonText(RigTestJson(report.rig_test), -1);
+  }
   if (report.trajectories) text += ",\n  \"trajectories\": " + TrajectoriesJson(report);
   return PrintableJson(text + "\n}\n");
 }

@@ -3,6 +3,7 @@
 #ifndef RIGEL_PROBLEMS_EVALUATION_ESTIMATE_REPORT_H_
 #define RIGEL_PROBLEMS_EVALUATION_ESTIMATE_REPORT_H_
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ namespace rigel {
 struct MatchCount {
   int all = 0;
   bool any_inter = false;  // any between two cameras
+  size_t rig = 0;          // RigNumber()
 };
 
 // The motions of many pairs; its lists go together.
@@ -25,6 +27,7 @@ struct EstimateReport {
   std::vector<FramePair> pairs;  // their rigs and matches are not used
   std::vector<MatchCount> matches;
   std::vector<MotionEstimate> estimates;
+  RigTest rig_test;  // TestRigOfRun() of these
   // The chained motions, if requested. `refined`: Trajectory::estimate is refined.
   std::optional<std::vector<Trajectory>> trajectories;
   bool refined = true;

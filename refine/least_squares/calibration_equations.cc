@@ -1,5 +1,7 @@
 #include "rigel/refine/least_squares/calibration_equations.h"
 
+#include <algorithm>
+
 #include "rigel/refine/least_squares/normal_equations.h"
 
 namespace rigel {
@@ -42,6 +44,20 @@ void SetFocalColumns(const GroupedMatches& matches, int k, const RowMajor3d& F,
 }
 
 }  // namespace
+
+UnalignedMatrix<kCameraErrors> CalibrationVariances(const RigCamera& camera) {
+  UnalignedMatrix<kCameraErrors> variances;
+  variances.head<3>().setConstant(camera.rotation_sigma * camera.rotation_sigma);
+  variances.segment<3>(3).setConstant(camera.position_sigma * camera.position_sigma);
+  variances(6) = camera.focal_sigma * camera.focal_sigma;
+  return variances;
+}
+
+bool StatesCalibrationErrors(const Rig& rig) {
+  return std::any_of(rig.cameras.begin(), rig.cameras.end(), [](const RigCamera& camera) {
+    return !CalibrationVariances(camera).isZero(0.0);
+  });
+}
 
 void AddCalibrationDerivatives(const SampsonKernelOptions& options, const GroupedMatches& matches,
                                const MatchGroup& group, const double* weights, const Pose& pose,

@@ -14,6 +14,10 @@
 
 namespace rigel {
 
+// The variances of the errors of a camera that the rig states, and whether it states any.
+UnalignedMatrix<kCameraErrors> CalibrationVariances(const RigCamera& camera);
+bool StatesCalibrationErrors(const Rig& rig);
+
 // The derivatives of the gradient of the cost, by the motion, by the errors of the cameras: sums
 // over matches, kCameraErrors columns for each camera.
 using CalibrationDerivatives = Eigen::Matrix<double, 6, Eigen::Dynamic>;

@@ -109,6 +109,16 @@ bool DifferentiateSampsonOnce(const GroupLinearization& linear, const RowPoint& 
   return true;
 }
 
+bool DifferentiateByFundamental(const GroupLinearization& linear, const RowPoint& point1,
+                                const RowPoint& point2, double* residual,
+                                UnalignedMatrix<9>* by_F) {
+  Terms t;
+  if (!SetTerms(linear, point1, point2, &t)) return false;
+  *residual = t.f * t.m * t.gradient2;
+  *by_F = t.f * t.outer;
+  return true;
+}
+
 bool DifferentiateSampson(const GroupLinearization& linear, const RowPoint& point1,
                           const RowPoint& point2, SampsonRow* row) {
   Terms t;

@@ -42,6 +42,10 @@ bool DifferentiateSampson(const GroupLinearization& linear, const RowPoint& poin
 bool DifferentiateSampsonOnce(const GroupLinearization& linear, const RowPoint& point1,
                               const RowPoint& point2, SampsonRow* row);
 
+// r and its derivative by the entries of F, column by column. `linear` needs F and rounding2 only.
+bool DifferentiateByFundamental(const GroupLinearization& linear, const RowPoint& point1,
+                                const RowPoint& point2, double* residual, UnalignedMatrix<9>* by_F);
+
 // D = sum w^2 (dJ/dp)(dJ/dp)' over the matches at `pose`; `weights` (grouped order, 0 leaves a
 // match out) are those of SampsonInformation(), which is D's H once it is divided by the variance
 // of the noise. A match with a noise of its own adds the same to D whatever that noise is: leave

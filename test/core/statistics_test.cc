@@ -58,5 +58,16 @@ TEST(Statistics, WhatDoesNotExistHasNoMedianAndNoEfficiency) {
   EXPECT_FALSE(Efficiency(errors, ComputeStatistics({0.0})).has_value());
 }
 
+// Tables: 5, 1 and 0.1 percent.
+TEST(Statistics, TailsOfChiSquared) {
+  EXPECT_NEAR(ChiSquaredTail(3.841459, 1), 0.05, 1e-7);
+  EXPECT_NEAR(ChiSquaredTail(5.991465, 2), 0.05, 1e-7);
+  EXPECT_NEAR(ChiSquaredTail(11.344867, 3), 0.01, 1e-8);
+  EXPECT_NEAR(ChiSquaredTail(22.457744, 6), 0.001, 1e-9);
+  EXPECT_NEAR(ChiSquaredTail(24.995790, 15), 0.05, 1e-7);
+  EXPECT_EQ(ChiSquaredTail(0.0, 4), 1.0);
+  EXPECT_EQ(ChiSquaredTail(1e5, 3), 0.0);
+}
+
 }  // namespace
 }  // namespace rigel

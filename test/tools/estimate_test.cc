@@ -54,7 +54,8 @@ TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
   ASSERT_EXIT_CODE(run, 0);
   EXPECT_THAT(run.err, IsEmpty());
   const Json report = ParseReport(run.out);
-  EXPECT_THAT(Keys(report), UnorderedElementsAre("format", "rigel_version", "options", "pairs"));
+  EXPECT_THAT(Keys(report), UnorderedElementsAre("format", "rigel_version", "options", "pairs",
+                                                 "rig_test"));
   EXPECT_EQ(report["format"], "rigel-estimate 1");
   EXPECT_EQ(report["options"]["solver"], "auto");
   EXPECT_EQ(report["options"]["confidence"], "0.9999");
@@ -67,7 +68,13 @@ TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
                     "translation_observable", "scale_observable", "rotation_sd_deg",
                     "translation_dir_sd_deg", "rig_direction", "rig_direction_sd_deg", "rig_center",
                     "length_sd", "covariance", "covariance_valid", "camera_pairs",
-                    "relative_scale_sd", "weakest_direction", "auto", "doubtful"));
+                    "relative_scale_sd", "weakest_direction", "auto", "doubtful", "rig_test"));
+    EXPECT_THAT(Keys(pair["rig_test"]),
+                UnorderedElementsAre("pairs", "chi2", "degrees_of_freedom", "p",
+                                     "p_with_calibration", "cameras"));
+    for (const Json& cameras : pair["camera_pairs"]) {
+      EXPECT_LT(std::abs(cameras["median_residual_px"].get<double>()), 0.5);
+    }
     EXPECT_FALSE(pair["doubtful"].get<bool>());
     EXPECT_EQ(pair["status"], "ok");
     EXPECT_EQ(pair["matches"], 200);
@@ -221,6 +228,39 @@ TEST_F(EstimateTest, SwappedCamerasAreToldOnceAndCountedInTheJson) {
     EXPECT_EQ(inliers, pair["inliers"].get<int>());
     ASSERT_FALSE(pair["rig_doubts"].empty());
   }
+}
+
+// The files state camera 1 with a pitch that it does not have.
+TEST_F(EstimateTest, ARigThatIsOffIsTold) {
+  const std::string rig = Path("rig.json");
+  const std::string camera = R"("model": "pinhole", "parameters": [718, 718, 620, 188],
+      "width": 1241, "height": 376, "q": [1, 0, 0, 0])";
+  WriteText(rig, R"({"format": "rigel-rig 1", "name": "stereo", "cameras": [{)" + camera +
+                     R"(, "s": [0, 0, 0]}, {)" + camera + R"(, "s": [0.54, 0, 0]}]})");
+  const std::string matches =
+      Simulate("in", {"--scene=street", "--rig=" + rig, "--motion=car", "--ground_m=1.65",
+                      "--pairs=5", "--inter_share=0.4", "--num_matches=300"});
+  const Args args = {"--matches=" + matches, "--prior=body", "--json=-"};
+  const Outcome right = RunTool("estimate", args);
+  EXPECT_THAT(right.err, Not(HasSubstr("camera 1:")));
+  for (int k = 0; k < 5; ++k) {
+    const std::string file = matches + "/00000" + std::to_string(k) + ".matches";
+    std::string text = ReadText(file);
+    const std::string stated = " 1 0 0 0 0.54 0 0";
+    const size_t at = text.find(stated);
+    ASSERT_NE(at, std::string::npos) << text.substr(0, 300);
+    // 0.1 degrees.
+    text.replace(at, stated.size(), " 0.9999996192 0.000872664515 0 0 0.54 0 0");
+    WriteText(file, text);
+  }
+  const Outcome off = RunTool("estimate", args);
+  EXPECT_EXIT_CODE(off, 0);
+  EXPECT_THAT(off.err, HasSubstr("camera 1: pitch -0.1"));
+  EXPECT_THAT(off.err, HasSubstr("in 5 pairs"));
+  const Json report = ParseReport(off.out);
+  EXPECT_EQ(report["rig_test"]["pairs"], 5);
+  EXPECT_LT(report["rig_test"]["p"].get<double>(), 1e-6);
+  for (const Json& pair : report["pairs"]) EXPECT_LT(pair["rig_test"]["p"].get<double>(), 0.01);
 }
 
 TEST_F(EstimateTest, CsvHasOneRowAPairOfTheSameColumns) {
