@@ -195,7 +195,7 @@ void DescribeObservability(const RefineOptions& options, const GroupedMatches& m
   }
   const FitInformation information =
       InformationOfFit(inliers, matches, fit.errors, fit.noise, fit.pose);
-  if (inliers.is_minimum) {
+  if (options.score_rig && inliers.is_minimum) {
     summary->rig_score = RigScoreOfFit(inliers, matches, fit.noise, information.psi2_of, fit.pose);
   }
 

@@ -84,6 +84,9 @@ struct RefineSettings {
   // Scale of the loss in units of the image noise (given, or estimated from the start); > 0.
   double loss_scale_sigmas = 6.0;
 
+  // Works out RefineSummary::rig_score, too. Some percent of the time.
+  bool score_rig = false;
+
   RefineEngine engine = RefineEngine::kAuto;
 
   int max_rounds = 5;           // >= 1; selections of inliers
@@ -180,7 +183,7 @@ struct RefineSummary {
   // Q <- Exp(d) Q (radians), the shift e of s <- s + e (metres), the growth of the focal lengths.
   std::optional<Matrix6d> calibration_covariance;
   std::vector<UnalignedMatrix<6, 7>> calibration_gain;
-  // Whether the cameras are turned as the rig says: TestRig().
+  // Whether the cameras are turned as the rig says: TestRig(). Empty without `score_rig`.
   RigScore rig_score;
   // Another motion of the body that fits as well within what the noise allows: a plane that one
   // camera sees has two. Where the two differ by more than the standard deviations, nothing that

@@ -95,6 +95,7 @@ bool SettingsFromFlags(ComparisonOptions* options, std::string* error) {
       !OutputsDiffer(Outputs(), error)) {
     return false;
   }
+  options->estimate.refine.score_rig = true;
   if (!FLAGS_g2o.empty() && !options->estimate.refine_motion) {
     return Refuse("--g2o: without a refinement (--refine=none) a motion has no information", error);
   }

@@ -31,7 +31,9 @@ FramePair Turned(FramePair pair, const Eigen::Vector3d& turn_deg) {
 
 RigScore ScoreOf(const FramePair& pair) {
   Pose pose = *pair.truth;
-  return RefinePair(RefineOptions(), pair, &pose).rig_score;
+  RefineOptions options;
+  options.score_rig = true;
+  return RefinePair(options, pair, &pose).rig_score;
 }
 
 std::vector<RigScore> ScoresOfScenes(int count, const Eigen::Vector3d& turn_deg) {
