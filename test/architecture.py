@@ -29,6 +29,7 @@ MAY_USE = {
     "refine": "core minimal/solvers minimal minimal/ransac refine/least_squares refine/search",
     "problems/io": "core",
     "problems/scenes": "core problems/io",
+    "problems/rigs": "core problems/io",
     "problems/images": "core problems/io",
     "problems/trajectories": "core refine problems/io",
     "problems/calibration": "core problems/io",
@@ -38,7 +39,7 @@ MAY_USE = {
         "core minimal minimal/ransac refine/least_squares refine problems/io problems/scenes problems/evaluation",
     "problems/experiments": "core minimal problems/io problems/scenes problems/evaluation",
     "tools":
-        "core minimal refine/least_squares refine problems/io problems/scenes problems/images problems/trajectories "
+        "core minimal refine/least_squares refine problems/io problems/scenes problems/rigs problems/images problems/trajectories "
         "problems/calibration problems/evaluation problems/benchmarks problems/experiments",
 }
 

@@ -1,0 +1,97 @@
+#include "rigel/problems/rigs/kalibr_rig.h"
+
+#include <optional>
+#include <vector>
+
+#include "rigel/core/angles.h"
+#include "rigel/problems/io/table.h"
+#include "rigel/problems/rigs/calibration_text.h"
+#include "rigel/problems/rigs/kalibr_lens.h"
+#include "rigel/problems/rigs/yaml_text.h"
+
+namespace rigel {
+namespace {
+
+std::optional<Pose> PoseOfKey(const YAML::Node& camera, const std::string& key) {
+  if (!HasKey(camera, key)) return std::nullopt;
+  return PoseOfRows(YamlNumbers(camera, key), key, YamlLine(YamlMember(camera, key)));
+}
+
+std::optional<Pose> BodyFromCamera(const YAML::Node& camera) {
+  if (std::optional<Pose> pose = PoseOfKey(camera, "T_imu_cam")) return pose;
+  const std::optional<Pose> inverse = PoseOfKey(camera, "T_cam_imu");
+  return inverse ? std::optional<Pose>(inverse->Inverse()) : std::nullopt;
+}
+
+// A file may state a camera both ways; it was changed by hand if they differ by more than this.
+constexpr double kSame = 1e-3;  // radians, metres
+
+// Empty if the pose and the one of the chain are the same.
+std::string Difference(const std::string& name, const Pose& pose, const Pose& of_chain) {
+  const Pose off = pose.Inverse() * of_chain;
+  const double turn = LogSO3(off.R).norm(), shift = off.t.norm();
+  if (turn <= kSame && shift <= kSame) return "";
+  return name + ": T_cn_cnm1 differs from the pose to the IMU by " +
+         FormatNumber(RadToDeg(turn), 2) + " degrees and " + FormatNumber(shift, 3) +
+         " m; the pose to the IMU is taken";
+}
+
+void Parse(const std::string& text, Calibration* calibration) {
+  const YAML::Node root = ParseYaml(text);
+  std::vector<YAML::Node> cameras;
+  const auto name_of = [](size_t k) { return "cam" + std::to_string(k); };
+  while (HasKey(root, name_of(cameras.size()))) cameras.push_back(root[name_of(cameras.size())]);
+  if (cameras.empty()) throw LineError(0, "the key cam0 is missing, expected cam0, cam1, ...");
+  // A gap would leave out cameras.
+  for (const auto& entry : root) {
+    const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
+    const bool is_camera = key.size() > 3 && key.compare(0, 3, "cam") == 0 &&
+                           key.find_first_not_of("0123456789", 3) == std::string::npos;
+    if (is_camera && !(key.size() <= 6 && std::stoul(key.substr(3)) < cameras.size())) {
+      throw LineError(YamlLine(entry.first),
+                      key + " without " + name_of(cameras.size()) + ", expected cam0, cam1, ...");
+    }
+  }
+
+  const bool has_imu = BodyFromCamera(cameras[0]).has_value();
+  calibration->body = has_imu ? "the IMU" : "cam0";
+  Pose body_from_last;
+  for (size_t k = 0; k < cameras.size(); ++k) {
+    const YAML::Node& camera = cameras[k];
+    const std::string name = name_of(k);
+    try {
+      std::optional<Pose> pose = BodyFromCamera(camera);
+      const std::optional<Pose> from_last = PoseOfKey(camera, "T_cn_cnm1");
+      const Pose of_chain = body_from_last * (k > 0 && from_last ? from_last->Inverse() : Pose());
+      if (pose && !has_imu) {
+        throw LineError(YamlLine(camera), "a pose to the IMU, but cam0 has none");
+      }
+      if (pose && k > 0 && from_last) {
+        const std::string note = Difference(name, *pose, of_chain);
+        if (!note.empty()) calibration->notes.push_back(note);
+      }
+      if (!pose && k > 0 && !from_last) {
+        throw LineError(YamlLine(camera), "no pose, expected T_cam_imu, T_imu_cam or T_cn_cnm1");
+      }
+      if (!pose) pose = of_chain;
+      RigCamera* added =
+          AddCamera(name, KalibrLens(camera, "distortion_coeffs"), *pose, &calibration->rig);
+      if (HasKey(camera, "timeshift_cam_imu")) {
+        added->time_offset = YamlNumber(camera, "timeshift_cam_imu");
+      }
+      body_from_last = *pose;
+    } catch (const LineError& error) {
+      throw LineError(error.line(), name + ": " + error.what());
+    }
+  }
+}
+
+}  // namespace
+
+bool ReadKalibrRig(const std::string& path, const CalibrationOptions& /*options*/,
+                   Calibration* calibration, std::string* error) {
+  return ReadWith(
+      path, [&](const std::string& text) { Parse(text, calibration); }, error);
+}
+
+}  // namespace rigel
