@@ -53,7 +53,7 @@ void Parse(const std::string& text, Calibration* calibration) {
     }
   }
 
-  const bool has_imu = BodyFromCamera(cameras[0]).has_value();
+  const bool has_imu = HasKey(cameras[0], "T_imu_cam") || HasKey(cameras[0], "T_cam_imu");
   calibration->body = has_imu ? "the IMU" : "cam0";
   Pose body_from_last;
   for (size_t k = 0; k < cameras.size(); ++k) {

@@ -130,9 +130,7 @@ bool ReadKittiRig(const std::string& path, const CalibrationOptions& options,
     const Lines lines = KeyedLines(text);
     if (lines.count("P0") == 0) throw LineError(0, "no line P0:, expected KITTI's calib.txt");
     if (!options.size) {
-      throw LineError(0,
-                      "states no image size, expected one from the user (1241 x 376 of sequence "
-                      "00)");
+      throw LineError(0, "states no image size, expected --size=1241x376 or as the images are");
     }
     for (int k = 0; k < kMaxCameras; ++k) {
       const std::string number = std::to_string(k);
