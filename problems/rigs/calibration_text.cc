@@ -70,7 +70,7 @@ std::vector<double> NumbersOf(const std::vector<std::string_view>& words, const 
 }
 
 Pose PoseOfRows(const std::vector<double>& rows, const std::string& what, int line) {
-  constexpr size_t kThreeRows = 12, kFourRows = 16;
+  constexpr size_t kThreeRows = 12, kFourRows = 16;  // numbers of [R t], and with 0 0 0 1
   if (rows.size() != kThreeRows && rows.size() != kFourRows) {
     throw LineError(line, what + " has " + std::to_string(rows.size()) +
                               " numbers, expected the rows of a 4x4 matrix [R t; 0 0 0 1]");

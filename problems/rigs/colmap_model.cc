@@ -55,7 +55,7 @@ bool ReadColmapCameras(const std::string& path, std::map<int, Camera>* cameras,
   const auto parse = [&](const std::string& text) {
     for (const TextLine& line : LinesOf(text)) {
       const std::vector<std::string_view> words = SplitAtBlanks(line.text);
-      constexpr size_t kFirstParameter = 4;
+      constexpr size_t kFirstParameter = 4;  // the place of its word
       if (words.size() < kFirstParameter) {
         throw LineError(line.number, "expected CAMERA_ID MODEL WIDTH HEIGHT PARAMETERS");
       }

@@ -19,7 +19,7 @@ constexpr double kUpright = 0.75;
 constexpr double kMoreUpright = 0.2;  // than the rig as it was read
 
 constexpr double kLongestBaseline = 10.0;  // metres: a vehicle is shorter
-constexpr double kNoBaseline = 1e-3;       // metres
+constexpr double kNoBaseline = 1e-3;       // metres: calibrations are no better
 
 // The rotation of the quaternion x y z w whose numbers were read as w x y z.
 Eigen::Matrix3d ReadAsXyzw(const Eigen::Matrix3d& R) {
@@ -75,7 +75,7 @@ void CheckReading(const Rig& rig, bool has_quaternions, std::vector<std::string>
 }
 
 void CheckDown(const RigFile& file, std::vector<std::string>* warnings) {
-  constexpr double kFarOff = 45.0;  // degrees
+  constexpr double kFarOff = 45.0;  // degrees: cameras of cars are tilted by less
   if (file.down) {
     const double off = RadToDeg(CamerasOffDown(file.rig, *file.down));
     if (off > kFarOff) {
@@ -87,9 +87,9 @@ void CheckDown(const RigFile& file, std::vector<std::string>* warnings) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const RigCamera& camera : file.rig.cameras) mean += camera.Q.col(1) / file.rig.size();
   for (int k = 0; k < file.rig.size(); ++k) {
-    // Half of the cameras upside down have no mean.
-    constexpr double kOnItsHead = -0.5;
-    if (mean.norm() > 0.1 && file.rig.cameras[k].Q.col(1).dot(mean.normalized()) < kOnItsHead) {
+    // Cosine, and the length below which cameras have no mean: half of them upside down.
+    constexpr double kOnItsHead = -0.5, kNoMean = 0.1;
+    if (mean.norm() > kNoMean && file.rig.cameras[k].Q.col(1).dot(mean.normalized()) < kOnItsHead) {
       warnings->push_back(Printable(file.camera_names[k]) + " is upside down, the others are not");
     }
   }
@@ -136,7 +136,7 @@ void CheckLenses(const RigFile& file, std::vector<std::string>* warnings) {
                           ") is far from the middle of the image: of another size?");
     }
     const double view = RadToDeg(HorizontalFieldOfView(lens));
-    constexpr double kNarrow = 5.0, kWide = 300.0;  // degrees
+    constexpr double kNarrow = 5.0, kWide = 300.0;  // degrees: no lens of a vehicle is beyond
     if (!(view > kNarrow && view < kWide)) {
       warnings->push_back(Printable(file.camera_names[k]) + ": a field of view of " +
                           FormatNumber(view, 1) + " degrees");

@@ -16,13 +16,14 @@ namespace {
 constexpr size_t kNameWidth = 15, kModelWidth = 14;
 
 std::string Degrees(double radians) {
-  // Without the sign of what is shown as 0.0.
+  constexpr double kZero = 0.05;  // shown as 0.0, without a sign
   const double degrees = RadToDeg(radians);
-  return FormatNumber(std::abs(degrees) < 0.05 ? 0.0 : degrees, 1);
+  return FormatNumber(std::abs(degrees) < kZero ? 0.0 : degrees, 1);
 }
 
 std::string Metres(double metres) {
-  return FormatNumber(std::abs(metres) < 5e-4 ? 0.0 : metres, 3);
+  constexpr double kZero = 5e-4;  // shown as 0.000, without a sign
+  return FormatNumber(std::abs(metres) < kZero ? 0.0 : metres, 3);
 }
 
 void AddCamera(const RigCamera& camera, const std::string& name, const BodyAxes& axes,
@@ -72,8 +73,8 @@ std::string Baselines(const RigFile& file, const BodyAxes& axes) {
 std::string TimeOffsets(const RigFile& file) {
   std::string text;
   for (int k = 0; k < file.rig.size(); ++k) {
-    constexpr double kMilliseconds = 1e3;
-    const double offset = kMilliseconds * file.rig.cameras[k].time_offset;
+    constexpr double kPerSecond = 1e3;  // milliseconds
+    const double offset = kPerSecond * file.rig.cameras[k].time_offset;
     if (offset == 0) continue;
     text += "time offset of " + Printable(file.camera_names[k]) + ": " + FormatNumber(offset, 3) +
             " ms\n";
