@@ -3,7 +3,7 @@ import math
 
 from rigel_files import Bad
 from rigel_plot_style import (BLACK, BLUE, GREEN, GREY, INDIGO, OLIVE, ORANGE, PINK, RED, SKY, WINE,
-                              faded, new_figure, plt)
+                              faded, new_figure)
 from rigel_plot_trajectory import cross, direction_text, dot
 
 COLORS = [BLUE, RED, GREEN, ORANGE, PINK, INDIGO, OLIVE, SKY, WINE, GREY]
@@ -218,7 +218,8 @@ def add_names(axis, cameras, points):
     for k, (camera, (start, end)) in enumerate(zip(cameras, points)):
         text = axis.text(0, 0, camera.name, color=COLORS[k % len(COLORS)], fontsize=8,
                          ha="center", va="center", zorder=6,
-                         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.6})
+                         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75,
+                               "pad": 0.6})
         extent = text.get_window_extent(renderer)
         half = extent.width / 2, extent.height / 2
         start, end = to_pixels(start), to_pixels(end)
@@ -316,7 +317,8 @@ def plot_rig(rig, stem, path):
     above.set_xlabel(f"right, {direction_text(right)} [m]", fontsize=9)
     above.set_ylabel(f"forward, {direction_text(forward)} [m]  \u2192", fontsize=9)
     side.set_xlabel(f"forward, {direction_text(forward)} [m]  \u2192", fontsize=9)
-    side.set_ylabel(f"\u2190  down, {direction_text(down)}          up, {direction_text(up)} [m]  \u2192", fontsize=9)
+    side.set_ylabel(f"\u2190  down, {direction_text(down)}          up, {direction_text(up)} [m]  "
+                    "\u2192", fontsize=9)
     above.set_title("from above, horizontal fields of view", fontsize=9.5)
     side.set_title("from the right, vertical fields of view", fontsize=9.5)
     count = "1 camera" if len(cameras) == 1 else f"{len(cameras)} cameras"

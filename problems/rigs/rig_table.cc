@@ -73,8 +73,8 @@ std::string Baselines(const RigFile& file, const BodyAxes& axes) {
 std::string TimeOffsets(const RigFile& file) {
   std::string text;
   for (int k = 0; k < file.rig.size(); ++k) {
-    constexpr double kPerSecond = 1e3;  // milliseconds
-    const double offset = kPerSecond * file.rig.cameras[k].time_offset;
+    constexpr double kMillisecondsPerSecond = 1e3;
+    const double offset = kMillisecondsPerSecond * file.rig.cameras[k].time_offset;
     if (offset == 0) continue;
     text += "time offset of " + Printable(file.camera_names[k]) + ": " + FormatNumber(offset, 3) +
             " ms\n";
