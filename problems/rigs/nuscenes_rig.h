@@ -8,7 +8,7 @@
 // A table has the calibrations of many drives. Those of one drive stand together: an entry begins
 // the next rig if its channel is there already.
 //
-// Source: nuscenes-devkit, docs/schema_nuscenes.md.
+// Source: the schema of nuScenes, a page of its nuscenes-devkit.
 #ifndef RIGEL_PROBLEMS_RIGS_NUSCENES_RIG_H_
 #define RIGEL_PROBLEMS_RIGS_NUSCENES_RIG_H_
 
