@@ -1,5 +1,6 @@
 #include "rigel/problems/rigs/kalibr_rig.h"
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -36,52 +37,63 @@ std::string Difference(const std::string& name, const Pose& pose, const Pose& of
          " m; the pose to the IMU is taken";
 }
 
-void Parse(const std::string& text, Calibration* calibration) {
-  const YAML::Node root = ParseYaml(text);
+std::string NameOf(size_t k) { return "cam" + std::to_string(k); }
+
+// The maps cam0, cam1, ...; a gap would leave out cameras.
+std::vector<YAML::Node> CamerasOf(const YAML::Node& root) {
   std::vector<YAML::Node> cameras;
-  const auto name_of = [](size_t k) { return "cam" + std::to_string(k); };
-  while (HasKey(root, name_of(cameras.size()))) cameras.push_back(root[name_of(cameras.size())]);
+  while (HasKey(root, NameOf(cameras.size()))) cameras.push_back(root[NameOf(cameras.size())]);
   if (cameras.empty()) throw LineError(0, "the key cam0 is missing, expected cam0, cam1, ...");
-  // A gap would leave out cameras.
   for (const auto& entry : root) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
     const bool is_camera = key.size() > 3 && key.compare(0, 3, "cam") == 0 &&
                            key.find_first_not_of("0123456789", 3) == std::string::npos;
-    if (is_camera && !(key.size() <= 6 && std::stoul(key.substr(3)) < cameras.size())) {
+    const bool is_known =
+        std::any_of(cameras.begin(), cameras.end(),
+                    [&](const YAML::Node& camera) { return camera.is(entry.second); });
+    if (is_camera && !is_known) {
       throw LineError(YamlLine(entry.first),
-                      key + " without " + name_of(cameras.size()) + ", expected cam0, cam1, ...");
+                      key + " without " + NameOf(cameras.size()) + ", expected cam0, cam1, ...");
     }
   }
+  return cameras;
+}
 
+// Adds camera k and returns its pose. `has_imu`: cam0 has a pose to the IMU.
+Pose AddKalibrCamera(const YAML::Node& camera, size_t k, bool has_imu, const Pose& body_from_last,
+                     Calibration* calibration) {
+  std::optional<Pose> pose = BodyFromCamera(camera);
+  if (pose && !has_imu) throw LineError(YamlLine(camera), "a pose to the IMU, but cam0 has none");
+  std::optional<Pose> of_chain;
+  if (k == 0) {
+    of_chain = Pose();
+  } else if (const std::optional<Pose> from_last = PoseOfKey(camera, "T_cn_cnm1")) {
+    of_chain = body_from_last * from_last->Inverse();
+  }
+  if (!pose && !of_chain) {
+    throw LineError(YamlLine(camera), "no pose, expected T_cam_imu, T_imu_cam or T_cn_cnm1");
+  }
+  const std::string note = pose && of_chain && k > 0 ? Difference(NameOf(k), *pose, *of_chain) : "";
+  if (!note.empty()) calibration->notes.push_back(note);
+  if (!pose) pose = of_chain;
+  RigCamera* added =
+      AddCamera(NameOf(k), KalibrLens(camera, "distortion_coeffs"), *pose, &calibration->rig);
+  if (HasKey(camera, "timeshift_cam_imu")) {
+    added->time_offset = YamlNumber(camera, "timeshift_cam_imu");
+  }
+  return *pose;
+}
+
+void Parse(const std::string& text, Calibration* calibration) {
+  const std::vector<YAML::Node> cameras = CamerasOf(ParseYaml(text));
   const bool has_imu = HasKey(cameras[0], "T_imu_cam") || HasKey(cameras[0], "T_cam_imu");
   calibration->body = has_imu ? "the IMU" : "cam0";
   Pose body_from_last;
   for (size_t k = 0; k < cameras.size(); ++k) {
-    const YAML::Node& camera = cameras[k];
-    const std::string name = name_of(k);
     try {
-      std::optional<Pose> pose = BodyFromCamera(camera);
-      const std::optional<Pose> from_last = PoseOfKey(camera, "T_cn_cnm1");
-      const Pose of_chain = body_from_last * (k > 0 && from_last ? from_last->Inverse() : Pose());
-      if (pose && !has_imu) {
-        throw LineError(YamlLine(camera), "a pose to the IMU, but cam0 has none");
-      }
-      if (pose && k > 0 && from_last) {
-        const std::string note = Difference(name, *pose, of_chain);
-        if (!note.empty()) calibration->notes.push_back(note);
-      }
-      if (!pose && k > 0 && !from_last) {
-        throw LineError(YamlLine(camera), "no pose, expected T_cam_imu, T_imu_cam or T_cn_cnm1");
-      }
-      if (!pose) pose = of_chain;
-      RigCamera* added =
-          AddCamera(name, KalibrLens(camera, "distortion_coeffs"), *pose, &calibration->rig);
-      if (HasKey(camera, "timeshift_cam_imu")) {
-        added->time_offset = YamlNumber(camera, "timeshift_cam_imu");
-      }
-      body_from_last = *pose;
+      body_from_last = AddKalibrCamera(cameras[k], k, has_imu, body_from_last, calibration);
     } catch (const LineError& error) {
-      throw LineError(error.line(), name + ": " + error.what());
+      throw LineError(error.line(), NameOf(k) + ": " + error.what());
     }
   }
 }
