@@ -112,6 +112,7 @@ Matrix6d InformationMatrix(const RefineSummary& summary, const Pose& f2_from_f1)
     return Matrix6d::Zero();
   }
   const Matrix6d of_body = CovarianceOfEdge(summary);
+  if (summary.stands) return PseudoInformation(of_body);
   if (!summary.RigDirectionKnown()) {
     Matrix6d covariance = of_body;
     covariance.bottomRows<3>().setZero();

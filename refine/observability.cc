@@ -93,31 +93,6 @@ double ParallaxLimitPx(const RefineOptions& options, const GroupedMatches& match
   return kParallaxSigmas * noise_px;
 }
 
-// True if the inliers of each camera pair lie on a line of the image or in one place, as far as the
-// noise tells. They determine no motion: the linear theory knows only one of those that fit.
-bool OnALine(const GroupedMatches& matches, const Fit& fit) {
-  // Times the noise: the least spread of points that are on no line. A cell of 0.1 m at 10 m has 2.
-  constexpr double kLeastSpread = 5.0;
-  for (size_t g = 0; g < matches.groups().size(); ++g) {
-    const MatchGroup& group = matches.groups()[g];
-    const RayArrays rays = matches.Directions(group);
-    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
-    int count = 0;
-    for (int k = 0; k < group.size; ++k) {
-      if (!fit.inliers[group.begin + k]) continue;
-      const Eigen::Vector3d x(rays.x1[k], rays.y1[k], rays.z1[k]);
-      moment += x * x.transpose();
-      ++count;
-    }
-    const double noise = fit.noise.sigma_of[g] * matches.RadiansPerPixel(group);
-    const double spread2 =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moment, Eigen::EigenvaluesOnly)
-            .eigenvalues()(0);
-    if (spread2 > kLeastSpread * kLeastSpread * noise * noise * count) return false;
-  }
-  return true;
-}
-
 // What another motion that fits as well leaves of the flags.
 void HeedOtherMotion(const Pose& body, RefineSummary* summary) {
   if (!summary->other_motion.has_value()) return;
@@ -154,6 +129,50 @@ void SetFlags(RefineSummary* summary, bool at_limit) {
 
 }  // namespace
 
+void SetParallax(const RefineOptions& options, const GroupedMatches& matches, const Fit& fit,
+                 RefineSummary* summary) {
+  summary->parallax_px = ParallaxPercentilePx(matches, fit.inliers, fit.pose);
+  summary->parallax_limit_px = ParallaxLimitPx(options, matches, fit);
+}
+
+bool OnALine(const GroupedMatches& matches, const Fit& fit) {
+  // Times the noise: the least spread of points that are on no line. A cell of 0.1 m at 10 m has 2.
+  constexpr double kLeastSpread = 5.0;
+  for (size_t g = 0; g < matches.groups().size(); ++g) {
+    const MatchGroup& group = matches.groups()[g];
+    const RayArrays rays = matches.Directions(group);
+    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+    int count = 0;
+    for (int k = 0; k < group.size; ++k) {
+      if (!fit.inliers[group.begin + k]) continue;
+      const Eigen::Vector3d x(rays.x1[k], rays.y1[k], rays.z1[k]);
+      moment += x * x.transpose();
+      ++count;
+    }
+    const double noise = fit.noise.sigma_of[g] * matches.RadiansPerPixel(group);
+    const double spread2 =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moment, Eigen::EigenvaluesOnly)
+            .eigenvalues()(0);
+    if (spread2 > kLeastSpread * kLeastSpread * noise * noise * count) return false;
+  }
+  return true;
+}
+
+void DescribeStanding(const GroupedMatches& matches, const Eigen::Vector3d& point,
+                      const StandingMotion& motion, RefineSummary* summary) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  summary->stands = true;
+  summary->rig_center = point + RigCentre(matches.rig());
+  const Matrix6d to_rig =
+      BodyFromPointJacobian(motion.pose.R, Eigen::Vector3d(-RigCentre(matches.rig())));
+  SetDeviations(to_rig * motion.covariance * to_rig.transpose(), MotionOfBody(motion.pose, point),
+                summary);
+  summary->relative_scale_sigma = summary->length_sigma = kInfinity;
+  summary->covariance_valid = true;
+  summary->rotation_observable =
+      summary->exceeds_chance && RadToDeg(summary->rotation_sigma) <= kRotationObservableDeg;
+}
+
 void DescribeObservability(const RefineOptions& options, const GroupedMatches& matches,
                            const Eigen::Vector3d& point, const Fitter& fitter, const Fit& fit,
                            RefineSummary* summary) {
@@ -169,8 +188,6 @@ void DescribeObservability(const RefineOptions& options, const GroupedMatches& m
   inliers.shared = SharedWithin(fitter.shared(), fit.inliers);
   summary->length_held = options.hold_distance;
   const Pose body = MotionOfBody(fit.pose, point);
-  summary->parallax_px = ParallaxPercentilePx(matches, fit.inliers, fit.pose);
-  summary->parallax_limit_px = ParallaxLimitPx(options, matches, fit);
   if (!std::isfinite(summary->parallax_px) ||
       !(summary->parallax_px > summary->parallax_limit_px)) {
     LeaveOutShortBaselines(matches, fit.pose, &inliers.factors);

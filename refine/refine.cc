@@ -21,6 +21,7 @@
 #include "rigel/refine/search/plane_twin.h"
 #include "rigel/refine/search/shared_pixels.h"
 #include "rigel/refine/search/sign_and_scale.h"
+#include "rigel/refine/standing.h"
 
 namespace rigel {
 namespace {
@@ -66,6 +67,7 @@ class Refiner {
   bool TryOthers();
   void TryStart(const Pose& start);
   bool ExceedsChanceAt(double threshold_px) const;
+  std::optional<StandingMotion> FindStanding() const;
   void Describe(bool done);
   void CountCameraPairs();
   bool GoesOn() { return !fitter_.stop()->Asked(); }
@@ -202,6 +204,8 @@ double Refiner::VotedLength() const {
   constexpr double kLoose = 3.0;    // thresholds
   constexpr double kReached = 0.1;  // of the logarithm: the fit has been as far as that
   const double length = fit_.pose.t.norm();
+  const std::vector<double> votes = VoteOnLength(matches_, fit_.pose, fit_.noise.sigma_px);
+  if (votes.empty()) return length;
   const auto score = [&](double of_length, double bound) {
     Pose pose = fit_.pose;
     pose.t *= of_length / length;
@@ -209,7 +213,7 @@ double Refiner::VotedLength() const {
   };
   double best = length;
   double least = score(length, std::numeric_limits<double>::infinity());
-  for (const double voted : VoteOnLength(matches_, fit_.pose, fit_.noise.sigma_px)) {
+  for (const double voted : votes) {
     if (std::abs(std::log(voted / length)) < kReached) continue;
     const double score_of_voted = score(voted, least);
     if (!(score_of_voted < least)) continue;
@@ -342,6 +346,20 @@ bool Refiner::ExceedsChanceAt(double threshold_px) const {
       CountDistinctPixels(matches_.size(), fitter_.shared()), threshold_px, options_.num_tries);
 }
 
+// The rotation of a rig whose points move by no more than noise, if it is one that stands.
+std::optional<StandingMotion> Refiner::FindStanding() const {
+  constexpr double kSigmas = 3.0;  // of a stated distance
+  // Of the limit: a wrong turn of the full model makes a parallax of its own.
+  constexpr double kNearly = 2.0;
+  if (options_.form != RefineForm::kFull || options_.residual != ResidualKind::kSampson ||
+      options_.hold_distance || !(summary_.parallax_px <= kNearly * summary_.parallax_limit_px) ||
+      prior_.distance.value_or(0.0) > kSigmas * prior_.distance_sigma || OnALine(matches_, fit_)) {
+    return std::nullopt;
+  }
+  return FitStanding(matches_, fitter_.shared(), point_, fit_, options_.loss,
+                     options_.loss_scale_sigmas, options_.typical_length);
+}
+
 void Refiner::Describe(bool done) {
   const bool stopped = done && fitter_.stop()->reason() != StopReason::kNone;
   if (stopped) fitter_.Select(false, &fit_);
@@ -354,8 +372,16 @@ void Refiner::Describe(bool done) {
     summary_.termination = Termination::kStopped;
     summary_.stopped = fitter_.stop()->reason();
   } else {
-    if (other_.has_value()) summary_.other_motion = MotionOfBody(*other_, point_);
-    DescribeObservability(options_, matches_, point_, fitter_, fit_, &summary_);
+    SetParallax(options_, matches_, fit_, &summary_);
+    if (std::optional<StandingMotion> standing = FindStanding()) {
+      DescribeStanding(matches_, point_, *standing, &summary_);
+      fit_.pose = standing->pose;
+      fit_.inliers.swap(standing->inliers);
+      fit_.num_inliers = standing->num_inliers;
+    } else {
+      if (other_.has_value()) summary_.other_motion = MotionOfBody(*other_, point_);
+      DescribeObservability(options_, matches_, point_, fitter_, fit_, &summary_);
+    }
   }
   summary_.num_inliers = fit_.num_inliers;
   summary_.inliers.assign(matches_.num_given(), 0);

@@ -199,7 +199,10 @@ struct RefineSummary {
   bool length_held = false;            // |t| was held
   double parallax_px = -1.0;           // see ParallaxPercentilePx()
   double parallax_limit_px = -1.0;     // what it has to exceed for translation_observable
-  bool exceeds_chance = false;         // more matches agree than random ones would
+  // The rig stands: b = 0 and a rotation alone explain both components of the pixels. `covariance`
+  // says what t can be at most, if points are 50 typical lengths away.
+  bool stands = false;
+  bool exceeds_chance = false;  // more matches agree than random ones would
   bool rotation_observable = false;
   bool translation_observable = false;      // the direction of t is observable
   bool rig_translation_observable = false;  // the direction of b is

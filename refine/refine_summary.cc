@@ -97,6 +97,13 @@ std::string RefineSummary::ObservabilityReport() const {
     return text;
   }
   if (!rotation_observable) return WhyNoRotation(*this);
+  if (stands) {
+    std::snprintf(text, sizeof(text),
+                  "|t| is consistent with zero: the rotation alone explains both components of the "
+                  "pixels, noise %.3g px",
+                  noise_px);
+    return text;
+  }
   if (!translation_observable) {
     // Relative standard deviation of |t| from which on |t| counts as not determined at all.
     constexpr double kNothingKnown = 10.0;

@@ -17,6 +17,8 @@ import subprocess
 import sys
 import tempfile
 
+import camera_models
+
 # Medians of chi2 with that many degrees of freedom.
 CHI2_MEDIAN = {2: 1.3863, 3: 2.3660, 5: 4.3515, 6: 5.3481}
 DEFAULT_COLUMNS = "i u v j u2 v2 score".split()
@@ -566,51 +568,77 @@ def compare_figures(report):
 # --- Cameras and the bound ----------------------------------------------------------------------
 
 class Camera:
-    """A pinhole or an opencv_fisheye, from the words of its line: its rays and how they change with
-    the pixel."""
+    """Any camera, from the words of its line: its rays and how they change with the pixel."""
 
     def __init__(self, words):
-        count = {"pinhole": 4, "opencv_fisheye": 8}.get(words[2])
-        if count is None:
+        if words[2] not in camera_models.PROJECT:
             raise Failure("camera %s is a %s, which is not known here" % (words[1], words[2]))
+        self.model = words[2]
         values = [float(word) for word in words[3:]]
-        self.fx, self.fy, self.cx, self.cy = values[:4]
-        self.fisheye = values[4:count] if count > 4 else None
-        self.width, self.height = values[count:count + 2]
-        self.rotation = matrix_of(values[count + 2:count + 6])
-        self.position = values[count + 6:count + 9]
+        self.parameters, rest = values[:-9], values[-9:]
+        self.width, self.height = rest[:2]
+        self.rotation = matrix_of(rest[2:6])
+        self.position = rest[6:9]
 
-    def radius(self, angle):
-        """How far from the centre the image of a fisheye is, in focal lengths."""
-        return angle * (1 + sum(k * angle ** (2 * n + 2) for n, k in enumerate(self.fisheye)))
+    def pixel_of(self, x):
+        """The pixel of a point of the camera frame."""
+        return camera_models.PROJECT[self.model](x, *self.parameters)
+
+    def steps_by_pixel(self, x):
+        """Two unit vectors across the ray x, and the derivatives, 2 x 2, of steps along them by the
+        pixel."""
+        step = 1e-6
+        least = min(range(3), key=lambda k: abs(x[k]))
+        first = cross(x, [float(k == least) for k in range(3)])
+        first = scaled(first, 1 / norm(first))
+        across = [first, cross(x, first)]
+        (a, c), (b, d) = [scaled(minus(self.pixel_of(add(x, scaled(e, step))),
+                                       self.pixel_of(minus(x, scaled(e, step)))), 1 / (2 * step))
+                          for e in across]
+        determinant = a * d - b * c
+        return across, [[d / determinant, -b / determinant], [-c / determinant, a / determinant]]
+
+    def own_ray(self, u, v):
+        """The ray in the camera frame, by Newton's method from that of a lens without distortion."""
+        if self.model == "pinhole":
+            fx, fy, cx, cy = self.parameters
+            return [(u - cx) / fx, (v - cy) / fy, 1.0]
+        corner = self.pixel_of([0.0, 0.0, 1.0])
+        off = [u - corner[0], v - corner[1]]
+        per_radian = abs(self.pixel_of([1e-3, 0.0, 1.0])[0] - corner[0]) / 1e-3
+        angle, length = norm(off) / per_radian, max(norm(off), 1e-12)
+        if "fisheye" not in self.model and self.model not in ("omni", "double_sphere", "eucm"):
+            angle = math.atan(angle)
+        x = [math.sin(angle) * off[0] / length, math.sin(angle) * off[1] / length, math.cos(angle)]
+        for _ in range(20):
+            miss = minus([u, v], self.pixel_of(x))
+            across, by_pixel = self.steps_by_pixel(x)
+            steps = apply(by_pixel, miss)
+            x = add(x, add(scaled(across[0], steps[0]), scaled(across[1], steps[1])))
+            x = scaled(x, 1 / norm(x))
+            if norm(miss) < 1e-7:
+                break
+        return x
 
     def ray(self, u, v):
-        x, y = (u - self.cx) / self.fx, (v - self.cy) / self.fy
-        if self.fisheye is None:
-            return apply(self.rotation, [x, y, 1.0])
-        radius, low, high = math.hypot(x, y), 0.0, math.pi
-        for _ in range(60):  # until rounding ends the bisection
-            angle = (low + high) / 2
-            low, high = (angle, high) if self.radius(angle) < radius else (low, angle)
-        across = math.sin(low) / radius if radius > 0 else 0.0
-        return apply(self.rotation, [x * across, y * across, math.cos(low)])
+        return apply(self.rotation, self.own_ray(u, v))
 
     def ray_by_pixel(self, u, v):
         """Derivatives of ray() by u and v."""
-        if self.fisheye is None:
+        if self.model == "pinhole":
             columns = transposed(self.rotation)
-            return scaled(columns[0], 1 / self.fx), scaled(columns[1], 1 / self.fy)
-        step = 1e-3
-        return [scaled(minus(self.ray(u + du, v + dv), self.ray(u - du, v - dv)), 1 / (2 * step))
-                for du, dv in ((step, 0), (0, step))]
+            return scaled(columns[0], 1 / self.parameters[0]), scaled(columns[1],
+                                                                      1 / self.parameters[1])
+        across, by_pixel = self.steps_by_pixel(self.own_ray(u, v))
+        return [apply(self.rotation, add(scaled(across[0], by_pixel[0][k]),
+                                         scaled(across[1], by_pixel[1][k]))) for k in range(2)]
 
     def project(self, point):
-        """The pixel of a point of the body frame, or None behind a pinhole."""
-        x, y, z = apply(transposed(self.rotation), minus(point, self.position))
-        if self.fisheye is not None:
-            across = self.radius(math.atan2(math.hypot(x, y), z)) / math.hypot(x, y)
-            return (self.fx * across * x + self.cx, self.fy * across * y + self.cy)
-        return (self.fx * x / z + self.cx, self.fy * y / z + self.cy) if z > 0.1 else None
+        """The pixel of a point of the body frame, or None behind a lens that sees less than 90
+        degrees."""
+        x = apply(transposed(self.rotation), minus(point, self.position))
+        wide = "fisheye" in self.model or self.model in ("fov", "omni", "double_sphere", "eucm")
+        return self.pixel_of(x) if wide or x[2] > 0.1 else None
 
     def sees(self, pixel):
         return pixel is not None and 0 <= pixel[0] < self.width and 0 <= pixel[1] < self.height

@@ -1,11 +1,9 @@
 #include "rigel/tools/calibrated_files.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <map>
 #include <set>
-#include <system_error>
 
 #include "rigel/problems/io/match_file.h"
 #include "rigel/problems/io/match_header.h"
@@ -16,8 +14,6 @@
 
 namespace rigel {
 namespace {
-
-namespace fs = std::filesystem;
 
 // The lines that are calibrated.
 std::vector<std::string> Names(const CalibratedLines& lines) {
@@ -136,29 +132,9 @@ void FinishInterruptedRun(const std::vector<std::string>& paths) {
 
 std::vector<std::string> Targets(const std::vector<std::string>& paths,
                                  const std::string& directory, std::string* error) {
-  if (directory.empty()) return paths;
-  std::error_code code;
-  std::vector<std::string> targets;
-  std::set<std::string> seen;
-  for (const std::string& path : paths) {
-    targets.push_back((fs::path(directory) / fs::path(path).filename()).string());
-    if (!seen.insert(targets.back()).second) {
-      *error = PrintablePath(path) + ": another file has the same name; both would be written to " +
-               PrintablePath(targets.back());
-      return {};
-    }
-    if (fs::equivalent(path, targets.back(), code)) {
-      *error = PrintablePath(path) + ": --output would overwrite it; use --in_place for that";
-      return {};
-    }
-  }
-  if (!fs::is_directory(directory, code)) return targets;
-  const auto is_own = [&](const std::string& name) {
-    const std::string path = (fs::path(directory) / name).string();
-    return seen.count(path) > 0 && !FindHeaderComment(path, "# rigel_calibrate_prior").empty();
-  };
-  if (!HoldsNoOtherMatchFiles(directory, is_own, error)) return {};
-  return targets;
+  return directory.empty() ? paths
+                           : CopyTargets(paths, directory, "# rigel_calibrate_prior",
+                                         "use --in_place for that", error);
 }
 
 bool WriteCalibratedFiles(const CalibrationReport& report, const CalibratedLines& lines,

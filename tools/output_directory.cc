@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/match_header.h"
 #include "rigel/tools/tool.h"
 
 namespace rigel {
@@ -41,6 +42,33 @@ bool HoldsNoOtherMatchFiles(const std::string& directory,
           ", not written by this run, which would later be read with its files; "
           "empty the directory or name another",
       error);
+}
+
+std::vector<std::string> CopyTargets(const std::vector<std::string>& paths,
+                                     const std::string& directory, const std::string& mark,
+                                     const std::string& instead, std::string* error) {
+  std::error_code code;
+  std::vector<std::string> targets;
+  std::set<std::string> seen;
+  for (const std::string& path : paths) {
+    targets.push_back((fs::path(directory) / fs::path(path).filename()).string());
+    if (!seen.insert(targets.back()).second) {
+      *error = PrintablePath(path) + ": another file has the same name; both would be written to " +
+               PrintablePath(targets.back());
+      return {};
+    }
+    if (fs::equivalent(path, targets.back(), code)) {
+      *error = PrintablePath(path) + ": --output would overwrite it; " + instead;
+      return {};
+    }
+  }
+  if (!fs::is_directory(directory, code)) return targets;
+  const auto is_own = [&](const std::string& name) {
+    const std::string path = (fs::path(directory) / name).string();
+    return seen.count(path) > 0 && !FindHeaderComment(path, mark).empty();
+  };
+  if (!HoldsNoOtherMatchFiles(directory, is_own, error)) return {};
+  return targets;
 }
 
 }  // namespace rigel

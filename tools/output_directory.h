@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace rigel {
 
@@ -17,6 +18,13 @@ bool MakeDirectory(const std::string& directory, std::string* error);
 bool HoldsNoOtherMatchFiles(const std::string& directory,
                             const std::function<bool(const std::string& name)>& is_own,
                             std::string* error);
+
+// Where changed copies of these match files go in `directory`. Empty with a message if two would be
+// one file, one its own source, or the directory holds match files that are not of this run or have
+// no comment line that begins with `mark`. `instead` ends the message of one that is its source.
+std::vector<std::string> CopyTargets(const std::vector<std::string>& paths,
+                                     const std::string& directory, const std::string& mark,
+                                     const std::string& instead, std::string* error);
 
 }  // namespace rigel
 

@@ -14,6 +14,7 @@
 #include "rigel/problems/images/sequence_matching.h"
 #include "rigel/problems/io/match_file.h"
 #include "rigel/tools/progress.h"
+#include "rigel/tools/sensor_flags.h"
 #include "rigel/tools/tool.h"
 
 DEFINE_string(kitti_root, "",
@@ -52,10 +53,10 @@ constexpr char kUsage[] =
     "\n"
     "Matches features of consecutive frames, in all four combinations of the left and the right\n"
     "camera: pairs of mutually nearest descriptors that pass the ratio test, without a check of\n"
-    "the geometry. Pixels are undistorted: cameras are pinholes. If the data set has a ground "
-    "truth, the files get\n"
-    "times, truth and gravity. Frames count from 0; a frame of EuRoC is a pair of images of one\n"
-    "time.\n";
+    "the geometry. Pixels are undistorted: cameras are pinholes. If the data set has a ground\n"
+    "truth, the files get times, truth and gravity. Frames count from 0; a frame of EuRoC is a\n"
+    "pair of images of one time. --attitude, --odometry and --gyro add priors from sensors, as\n"
+    "rigel_convert does.\n";
 
 bool IsKitti() { return !FLAGS_kitti_root.empty(); }
 
@@ -107,6 +108,7 @@ bool SettingsFromFlags(SequenceMatchingOptions* options, EurocOptions* euroc, st
   options->stride = FLAGS_stride;
   options->num_threads = FLAGS_threads;
   options->resume = FLAGS_resume;
+  if (!CheckSensorFlags(error)) return false;
   if (options->IsValid(error)) return true;
   *error = "--" + *error;
   return false;
@@ -156,6 +158,12 @@ int Run() {
   cv::setNumThreads(1);
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   if (!ReadSequence(euroc, &sequence, &error)) return Failure(error);
+  SensorSource sensors;
+  if (HasSensors()) {
+    if (!sensors.Load(&error)) return Failure(error);
+    options.header_lines = [&](const FramePair& pair) { return sensors.Lines(pair); };
+    options.header_settings = SensorSource::Settings();
+  }
 
   std::unique_ptr<Progress> progress;
   SequenceMatchingSummary summary;
@@ -166,6 +174,7 @@ int Run() {
   progress.reset();
   if (!ran) return Failure(error);
   Report(summary);
+  sensors.Report();
   return ExitCode(summary.errors.empty() && summary.missing.empty());
 }
 

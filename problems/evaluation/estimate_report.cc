@@ -112,6 +112,7 @@ void PutRefined(const MotionEstimate& e, Json* entry) {
   (*entry)["rotation_observable"] = refine.rotation_observable;
   (*entry)["translation_observable"] = refine.translation_observable;
   (*entry)["scale_observable"] = refine.scale_observable;
+  if (refine.stands) (*entry)["stands"] = true;
   Json& camera_pairs = (*entry)["camera_pairs"] = Json::array();
   for (const CameraPairFit& fit : refine.camera_pairs) {
     camera_pairs.push_back({{"cameras", {fit.camera1, fit.camera2}},

@@ -33,7 +33,7 @@ std::string SettingsText(const SequenceMatchingOptions& options, const ImageSequ
   std::string text = "sequence " + sequence.name + "\nstride " + std::to_string(options.stride) +
                      "\nfeatures " + FeatureTypeName(options.features.type) + "\nmax_features " +
                      std::to_string(options.features.max_features) + "\nratio " +
-                     CsvNumber(options.features.ratio) + "\n";
+                     CsvNumber(options.features.ratio) + "\n" + options.header_settings;
   const auto any = [&](const auto& has) {
     return std::any_of(sequence.frames.begin(), sequence.frames.end(), has) ? "yes\n" : "no\n";
   };

@@ -15,6 +15,7 @@
 #include "rigel/problems/io/directory.h"
 #include "rigel/problems/io/exception_message.h"
 #include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/match_header.h"
 #include "rigel/problems/io/printable.h"
 
 namespace rigel {
@@ -154,9 +155,10 @@ void NoteMissingImages(const SequenceMatchingOptions& options, const ImageSequen
 // once.
 class PairMatcher {
  public:
-  PairMatcher(const FeatureOptions& options, const ImageSequence& sequence, std::string directory,
-              const std::vector<FrameIndices>& pairs)
-      : options_(options),
+  PairMatcher(const SequenceMatchingOptions& options, const ImageSequence& sequence,
+              std::string directory, const std::vector<FrameIndices>& pairs)
+      : options_(options.features),
+        header_lines_(options.header_lines),
         sequence_(sequence),
         directory_(std::move(directory)),
         pairs_(pairs),
@@ -206,10 +208,12 @@ class PairMatcher {
       *error = Printable(path) + ": not written: " + what;
       return false;
     }
-    return WriteMatchFile(path, pair, error);
+    return header_lines_ ? WriteMatchFile(path, pair, header_lines_(pair), error)
+                         : WriteMatchFile(path, pair, error);
   }
 
   const FeatureOptions& options_;
+  const std::function<std::map<std::string, std::string>(const FramePair&)>& header_lines_;
   const ImageSequence& sequence_;
   const std::string directory_;
   const std::vector<FrameIndices>& pairs_;
@@ -257,7 +261,7 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
   const int todo = static_cast<int>(pairs.size());
   begin(todo);
 
-  PairMatcher matcher(options.features, sequence, directory, pairs);
+  PairMatcher matcher(options, sequence, directory, pairs);
   // Pairs that one thread takes in turn. Neighbours share a frame: on two threads, the second would
   // wait until the first has extracted it.
   constexpr int kMaxRun = 8;

@@ -3,9 +3,11 @@
 #define RIGEL_PROBLEMS_IMAGES_SEQUENCE_MATCHING_H_
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "rigel/core/frame_pair.h"
 #include "rigel/problems/images/image_features.h"
 #include "rigel/problems/images/image_sequence.h"
 
@@ -20,6 +22,10 @@ struct SequenceMatchingOptions {
   int num_threads = 1;  // the files do not depend on it
   // Keep the complete files of an earlier run of the same settings, and do the rest.
   bool resume = false;
+  // Lines of the header that replace those of a pair (ReplaceHeaderLines() in
+  // rigel/problems/io/match_header.h); may be empty. Called on any thread.
+  std::function<std::map<std::string, std::string>(const FramePair& pair)> header_lines;
+  std::string header_settings;  // lines of what they are made from, for the settings of the run
 
   bool IsValid(std::string* error) const;
 };

@@ -109,6 +109,13 @@ class Parser : private MatchLines {
     return true;
   }
 
+  // Checked only: nothing that is estimated uses it yet.
+  bool Rotation() {
+    Eigen::Vector4d q;
+    double sigma;
+    return UnitVector(1, "quaternion", &q) && SigmaDeg(5, &sigma);
+  }
+
   bool Format() {
     if (Column(1) == "rigmatch" && Column(2) == "1") return true;
     return Fail("format " + Quoted(Column(1)) + " version " + Quoted(Column(2)) +
@@ -250,6 +257,8 @@ class Parser : private MatchLines {
         return SigmaDeg(&prior.normal_sigma);
       case kForward:
         return Direction(&prior.forward);
+      case kRotation:
+        return Rotation();
       case kDistance:
         return Distance();
       case kNoise:

@@ -14,6 +14,7 @@
 //   normal NX NY NZ
 //   normal_sigma_deg S
 //   forward FX FY FZ
+//   rotation QW QX QY QZ SIGMA_DEG
 //   distance D SIGMA
 //   noise_px S
 //   sequence NAME
@@ -27,10 +28,11 @@
 // affine frame, all four or none are there, and so of `u0 v0 u20 v20`, the exact pixels.
 //
 // `format`, `matches` and at least `camera 0` are required. Header lines come in any order
-// before `matches`; `#` starts a comment line, blank lines are ignored, columns are separated by
-// blanks or tabs. MODEL and its parameters are those of rigel/core/camera.h, and pixels are what
-// this camera records. Lengths are metres, times seconds, sigmas of directions degrees (radians in
-// MotionPrior); frames and quaternion order as in rigel/core/pose.h and rigel/core/rig.h.
+// before `matches`. `rotation` is checked and not kept. `#` starts a comment line, blank lines are
+// ignored, columns are separated by blanks or tabs. MODEL and its parameters are those of
+// rigel/core/camera.h, and pixels are what this camera records. Lengths are metres, times seconds,
+// sigmas of directions degrees (radians in MotionPrior); frames and quaternion order as in
+// rigel/core/pose.h and rigel/core/rig.h.
 //
 // No function here logs, throws on what a file holds, or ends the process. An error message is
 // one line of printable text: "path:line: what was wrong, what was expected", without the line

@@ -5,6 +5,7 @@
 
 #include "rigel/problems/io/input_file.h"
 #include "rigel/problems/io/match_file.h"
+#include "rigel/problems/io/whole_file.h"
 
 namespace rigel {
 
@@ -58,6 +59,14 @@ bool ReadWithHeaderLines(const std::string& path, const std::map<std::string, st
   }
   *text = ReplaceHeaderLines(std::string(bytes.text()), lines);
   return ParseMatches(*text, path + ": not written, it could not be read back", &pair, error);
+}
+
+bool WriteMatchFile(const std::string& path, const FramePair& pair,
+                    const std::map<std::string, std::string>& lines, std::string* error) {
+  const std::string text = ReplaceHeaderLines(FormatMatches(pair), lines);
+  FramePair ignored;
+  return ParseMatches(text, path + ": not written, it could not be read back", &ignored, error) &&
+         WriteWholeFile(path, MatchFileBytes(path, text), error);
 }
 
 std::string FindHeaderComment(const std::string& path, const std::string& words) {

@@ -5,6 +5,8 @@
 #include <map>
 #include <string>
 
+#include "rigel/core/frame_pair.h"
+
 namespace rigel {
 
 // Removes the lines of these keywords from the header of a match file's text, and inserts the given
@@ -17,6 +19,11 @@ std::string ReplaceHeaderLines(const std::string& text,
 // cannot be read, or if it is no match file, before or after the change.
 bool ReadWithHeaderLines(const std::string& path, const std::map<std::string, std::string>& lines,
                          std::string* text, std::string* error);
+
+// WriteMatchFile() with these lines. False with a message if the file cannot be written, or could
+// not be read back.
+bool WriteMatchFile(const std::string& path, const FramePair& pair,
+                    const std::map<std::string, std::string>& lines, std::string* error);
 
 // The first comment line in the header of the file that begins with these words. Empty if there is
 // none, or if the file cannot be read.

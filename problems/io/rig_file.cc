@@ -109,9 +109,11 @@ void ReadOlderKeys(const Json& json, const std::string& model, Camera* camera) {
     FailModel(model, "pinhole, or one that begins with radial, brown or equidistant");
   }
   constexpr char kExpected[] = "'parameters', or 'fx', 'fy', 'cx' and 'cy'";
-  *camera = Camera::Pinhole(
-      Positive(Member(json, "fx", kExpected), "fx"), Positive(Member(json, "fy", kExpected), "fy"),
-      Number(Member(json, "cx", kExpected), "cx"), Number(Member(json, "cy", kExpected), "cy"));
+  const double fx = Positive(Member(json, "fx", kExpected), "fx");
+  const double fy = Positive(Member(json, "fy", kExpected), "fy");
+  const double cx = Number(Member(json, "cx", kExpected), "cx");
+  const double cy = Number(Member(json, "cy", kExpected), "cy");
+  *camera = Camera::Pinhole(fx, fy, cx, cy);
   if (known->num_coefficients == 0 && !json.contains("distortion")) return;
   const std::vector<double> d = Numbers(Member(json, "distortion", "its coefficients"),
                                         "distortion", known->num_coefficients);

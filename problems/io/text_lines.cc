@@ -44,6 +44,15 @@ bool ReadTextLines(const std::string& path, std::vector<TextLine>* lines, std::s
   });
 }
 
+bool ReadLinesAndComments(const std::string& path, std::vector<TextLine>* lines,
+                          std::string* error) {
+  lines->clear();
+  return ForEachLine(path, error, [&](int number, std::string_view text) {
+    if (!text.empty()) lines->push_back({number, std::string(text)});
+    return true;
+  });
+}
+
 bool ReadFrameLines(const std::string& path, std::vector<TextLine>* lines, std::string* error) {
   lines->clear();
   const auto refuse = [&](int number, const char* what) {

@@ -22,6 +22,10 @@ struct TextLine {
 // whose lines identify themselves.
 bool ReadTextLines(const std::string& path, std::vector<TextLine>* lines, std::string* error);
 
+// The same with the lines that start with '#': one of them may name the columns.
+bool ReadLinesAndComments(const std::string& path, std::vector<TextLine>* lines,
+                          std::string* error);
+
 // All lines of a file whose line k belongs to frame k, without blanks at their ends. A blank line
 // or a comment is refused with its number: if it were skipped, all later frames would get a wrong
 // line. Blank lines at the end of the file are allowed.

@@ -31,6 +31,9 @@ std::string WhyNoEdge(const FramePair& pair, const MotionEstimate& e) {
 // Sets the rig's centre at rest, with the covariance of the estimate about it. If |t| is not
 // determined, the covariance of the translation is kStillMetres squared.
 void SetStanding(Pose* pose, RefineSummary* refine) {
+  refine->rig_translation_observable = true;
+  refine->length_sigma = 0.0;
+  if (refine->stands) return;
   const Eigen::Vector3d& point = refine->rig_center;
   const Matrix6d from_body = BodyFromPointJacobian(pose->R, -point);
   Matrix6d covariance = from_body * *refine->covariance * from_body.transpose();
@@ -47,8 +50,6 @@ void SetStanding(Pose* pose, RefineSummary* refine) {
   }
   const Matrix6d to_body = BodyFromPointJacobian(pose->R, point);
   refine->covariance = Matrix6d(to_body * covariance * to_body.transpose());
-  refine->rig_translation_observable = true;
-  refine->length_sigma = 0.0;
   *pose = Standing(*pose, *refine);
 }
 

@@ -27,7 +27,8 @@ struct Step {
 
 bool StandsStill(const FramePair& pair, const RefineSummary& refine) {
   if (refine.RigDirectionKnown() || !refine.rotation_observable) return false;
-  if (!(refine.parallax_px >= 0 && refine.parallax_px <= refine.parallax_limit_px)) return false;
+  const bool has_parallax = !(refine.parallax_px <= refine.parallax_limit_px);
+  if (!refine.stands && (has_parallax || refine.parallax_px < 0)) return false;
   const MotionPrior& prior = pair.prior;
   return !prior.distance || *prior.distance <= kStillMetres + kStillSigmas * prior.distance_sigma;
 }
@@ -38,6 +39,7 @@ bool KnowsLength(const RefineSummary& refine) {
 }
 
 Pose Standing(const Pose& pose, const RefineSummary& refine) {
+  if (refine.stands) return pose;
   return MotionOfBody({pose.R, Eigen::Vector3d::Zero()}, refine.rig_center);
 }
 

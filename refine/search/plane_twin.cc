@@ -55,6 +55,7 @@ std::optional<Eigen::Vector3d> FitPlane(const std::vector<PlaneRow>& rows) {
   constexpr int kRounds = 10;
   constexpr double kNear = 2.0;    // standard deviations: of a plane 95 percent are nearer
   constexpr double kShare = 0.87;  // of the points: in deep scenes fewer are near
+  constexpr int kDeepAfter = 3;    // rounds: the share of planes has grown beyond half by then
   if (rows.size() < kMinPoints) return std::nullopt;
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
   size_t num_near = 0;
@@ -70,6 +71,7 @@ std::optional<Eigen::Vector3d> FitPlane(const std::vector<PlaneRow>& rows) {
       b += weight * row.value * row.by_n;
       num_near += std::abs(residual) < kNear ? 1 : 0;
     }
+    if (round >= kDeepAfter && !(num_near >= 0.5 * rows.size())) return std::nullopt;
     n = A.ldlt().solve(b);
   }
   if (!n.allFinite() || !(num_near >= kShare * rows.size())) return std::nullopt;

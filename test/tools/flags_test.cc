@@ -40,6 +40,12 @@ const Args kEstimationFlags = {"calibration_sigma_deg",
                                "use",
                                "use_prior_in_refine"};
 
+const Args kSensorFlags = {
+    "attitude",         "attitude_sigma_deg", "attitude_time_offset_s",  "gyro",
+    "gyro_bias_deg",    "gyro_noise_deg",     "gyro_time_offset_s",      "imu_from_body",
+    "odometry",         "odometry_sigma",     "odometry_sigma_fraction", "odometry_time_offset_s",
+    "sensor_max_gap_s", "world_down"};
+
 std::map<std::string, Args> FlagsOfTools() {
   return {
       {"benchmark",
@@ -49,11 +55,12 @@ std::map<std::string, Args> FlagsOfTools() {
        kEstimationFlags + Args{"baseline", "by", "csv", "fail_above", "json", "max_failures",
                                "merge", "per_pair", "solvers", "tolerance"}},
       {"calibrate_prior", kEstimationFlags + Args{"in_place", "json", "lines", "output", "solver"}},
+      {"convert", kSensorFlags + Args{"matches", "output"}},
       {"estimate", kEstimationFlags + Args{"csv", "drift", "g2o", "json", "kitti_trajectory",
                                            "solver", "truth_trajectory", "tum_trajectory"}},
-      {"match",
-       {"euroc_root", "features", "first", "kitti_root", "last", "max_features", "output", "ratio",
-        "resume", "sequence", "stride", "sync_tolerance_ms", "threads"}},
+      {"match", kSensorFlags + Args{"euroc_root", "features", "first", "kitti_root", "last",
+                                    "max_features", "output", "ratio", "resume", "sequence",
+                                    "stride", "sync_tolerance_ms", "threads"}},
       {"simulate",
        {"calibration_sigma_deg",
         "calibration_sigma_m",
@@ -89,6 +96,10 @@ std::map<std::string, Args> FlagsOfTools() {
 // made: who looks at files before the flags fails with 1 instead of 2.
 Args Minimal(const std::string& tool) {
   if (tool == "benchmark") return {"--solvers=4pt", "--trials=2"};
+  if (tool == "convert") {
+    return {"--matches=/proc/nonexistent/of/rigel", "--output=/proc/nonexistent/of/rigel",
+            "--odometry=/proc/nonexistent/of/rigel"};
+  }
   if (tool == "match") {
     return {"--euroc_root=/proc/nonexistent/of/rigel", "--output=/proc/nonexistent/of/rigel"};
   }
@@ -105,7 +116,7 @@ void ExpectUsageError(const std::string& tool, const Args& wrong, const std::str
 }
 
 Args Tools() {
-  Args tools = {"benchmark", "calibrate_prior", "compare", "estimate", "simulate"};
+  Args tools = {"benchmark", "calibrate_prior", "compare", "convert", "estimate", "simulate"};
 #ifdef RIGEL_HAS_MATCH
   tools.push_back("match");
 #endif

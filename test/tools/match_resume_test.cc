@@ -75,5 +75,33 @@ TEST_F(MatchTest, ResumeOfOtherSettingsOrOfOtherFilesIsRefused) {
   EXPECT_THAT(Lines(unknown.err), ElementsAre(HasSubstr("rigel_match.settings: cannot be opened")));
 }
 
+TEST_F(MatchTest, SensorsAreInTheFilesAndAmongTheSettings) {
+  WriteText(Path("speed.csv"), "time,speed\n0,2\n0.2,2\n0.25,2\n");
+  WriteText(Path("gyro.csv"), "0,0,1,0\n0.1,0,1,0\n0.5,0,1,0\n");
+  const Args sensors = {"--odometry=" + Path("speed.csv"), "--gyro=" + Path("gyro.csv"),
+                        "--imu_from_body=0,1,0,0"};
+  const Outcome run = Kitti("out", sensors);
+  EXPECT_EXIT_CODE(run, 0);
+  EXPECT_THAT(run.err, HasSubstr("--odometry: distance in 2 of 3 pairs; 1 outside its times, 0.000 "
+                                 "to 0.250 s (the pairs: 0.000 to 0.300 s)\n"));
+  EXPECT_THAT(run.err,
+              HasSubstr("--gyro: rotation in 1 of 3 pairs; 2 in a gap of more than 0.2 s\n"));
+  const FramePair pair = Read(Path("out/000000-000001.matches"));
+  ASSERT_TRUE(pair.prior.distance && pair.prior.axis && pair.prior.gravity1);
+  EXPECT_NEAR(*pair.prior.distance, 0.2, 0.001);
+  EXPECT_NEAR(std::abs(pair.prior.axis->y()), 1, 1e-9);
+  EXPECT_THAT(ReadText(Path("out/000000-000001.matches")), HasSubstr("\nrotation 0.99"));
+  const FramePair last = Read(Path("out/000002-000003.matches"));
+  EXPECT_FALSE(last.prior.distance || last.prior.axis);
+  EXPECT_TRUE(last.prior.gravity1) << "no sensor gives it, so that of the truth stays";
+
+  EXPECT_EXIT_CODE(Kitti("out", sensors + Args{"--resume"}), 0);
+  for (const Args& other : {Args(), sensors + Args{"--gyro_noise_deg=1"}}) {
+    const Outcome resume = Kitti("out", other + Args{"--resume"});
+    EXPECT_EXIT_CODE(resume, 1);
+    EXPECT_THAT(resume.err, HasSubstr("the match files beside it were made with"));
+  }
+}
+
 }  // namespace
 }  // namespace rigel

@@ -88,7 +88,7 @@ TEST(MatchRows, BrokenOnesAreRefused) {
       {names + " inlier inlier", row + " 1 1", 3,
        "'inlier' for the second time, expected each name once"},
       {names + " u", row + " 1", 3, "column 'u' for the second time"},
-      {std::string(kAll) + " inlier", row, 3, "23 columns, expected each name once"},
+      {std::string(kAll) + " inlier", row, 3, "column 'inlier' for the second time"},
       {names + " a11 a12 a21", row + " 1 0 0", 3,
        "3 of the columns a11 a12 a21 a22, expected all four or none"},
       {names + " u0", row + " 1", 3, "1 of the columns u0 v0 u20 v20, expected all four"},

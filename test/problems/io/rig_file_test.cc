@@ -255,8 +255,8 @@ TEST(RigFile, RealRigs) {
       EXPECT_THAT(error, HasSubstr("is not read, expected pinhole"));
     }
   }
-  EXPECT_EQ(num_read, 8);
-  EXPECT_EQ(num_refused, 2);
+  EXPECT_EQ(num_read, 9);
+  EXPECT_EQ(num_refused, 1);
 }
 
 }  // namespace
