@@ -47,10 +47,10 @@ LossSums SumLoss(const FittedInliers& fit, const MatchGroup& group, const MatchE
   return sums;
 }
 
-// The gradient of the cost at `pose`.
-Vector6d GradientAt(const FittedInliers& fit, const GroupedMatches& matches,
-                    const NoiseModel& noise, const Pose& pose) {
-  Vector6d sum = Vector6d::Zero();
+// Cost and gradient at `pose`, or the cost alone.
+MotionNormalEquations CostAt(const FittedInliers& fit, const GroupedMatches& matches,
+                             const NoiseModel& noise, const Pose& pose, SampsonParts parts) {
+  MotionNormalEquations sum;
   for (size_t g = 0; g < matches.groups().size(); ++g) {
     const MatchGroup& group = matches.groups()[g];
     const double sigma = noise.sigma_of[g];
@@ -59,8 +59,9 @@ Vector6d GradientAt(const FittedInliers& fit, const GroupedMatches& matches,
     options.loss_scale = fit.loss_scale_sigmas * sigma;
     MotionNormalEquations equations;
     AddNormalEquations(options, matches, group, matches.Rows(group),
-                       fit.factors.data() + group.begin, pose, SampsonParts::kGradient, &equations);
-    sum += equations.gradient / (sigma * sigma);
+                       fit.factors.data() + group.begin, pose, parts, &equations);
+    sum.cost += equations.cost / (sigma * sigma);
+    sum.gradient += equations.gradient / (sigma * sigma);
   }
   return sum;
 }
@@ -70,7 +71,10 @@ Vector6d GradientAt(const FittedInliers& fit, const GroupedMatches& matches,
 Matrix6d CurvatureAt(const FittedInliers& fit, const GroupedMatches& matches,
                      const NoiseModel& noise, const Pose& pose) {
   constexpr double kStep = 1e-6;  // radians, and a fraction of |t|
-  const Vector6d gradient = GradientAt(fit, matches, noise, pose);
+  const auto gradient_at = [&](const Pose& at) {
+    return CostAt(fit, matches, noise, at, SampsonParts::kGradient).gradient;
+  };
+  const Vector6d gradient = gradient_at(pose);
   Matrix6d curvature;
   for (int k = 0; k < 6; ++k) {
     const double step = k < 3 ? kStep : kStep * pose.t.norm();
@@ -81,7 +85,7 @@ Matrix6d CurvatureAt(const FittedInliers& fit, const GroupedMatches& matches,
     } else {
       moved.t += shift;
     }
-    curvature.col(k) = (GradientAt(fit, matches, noise, moved) - gradient) / step;
+    curvature.col(k) = (gradient_at(moved) - gradient) / step;
   }
   return 0.5 * (curvature + curvature.transpose());
 }
@@ -305,6 +309,38 @@ FitCovariance CovarianceOfFit(const FitInformation& information, const Matrix6d&
                               const Matrix6d& inverse) {
   return {inverse * (information.scatter + prior) * inverse,
           inverse * information.calibration * inverse};
+}
+
+CostRise RiseOfCost(const FittedInliers& fit, const GroupedMatches& matches,
+                    const NoiseModel& noise, const Pose& pose, const Matrix6d& S) {
+  constexpr int kDirections = 2;
+  constexpr double kSigmas = 3.0;
+  constexpr double kLeast = 0.1;  // a valley is taken as no wider than this says
+  CostRise result;
+  const MotionBasis basis = FullBasis(pose, false);
+  const double length = pose.t.norm();
+  // A turn by an angle and a motion by that share of |t| count alike.
+  Vector6d unit;
+  unit << 1, 1, 1, length, length, length;
+  const Square B = unit.cwiseInverse().asDiagonal() * basis;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Square> eigen(
+      Square(basis.transpose() * S * basis), Square(B.transpose() * B));
+  if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()(0) > 0)) return result;
+  const auto cost_at = [&](const Pose& at) {
+    return CostAt(fit, matches, noise, at, SampsonParts::kCost).cost;
+  };
+  const double here = cost_at(pose);
+  for (int k = 0; k < kDirections; ++k) {
+    const Vector6d sd = basis * eigen.eigenvectors().col(k) / std::sqrt(eigen.eigenvalues()(k));
+    double rise = 1.0;
+    for (const double step : {kSigmas, -kSigmas}) {
+      const Pose moved = {ExpSO3(step * sd.head<3>()) * pose.R, pose.t + step * sd.tail<3>()};
+      rise = std::min(rise, (cost_at(moved) - here) / (0.5 * step * step));
+    }
+    result.least = std::min(result.least, rise);
+    result.widening += (1.0 / std::max(rise, kLeast) - 1.0) * sd * sd.transpose();
+  }
+  return result;
 }
 
 double TrueInformation(const FitInformation& information, const Matrix6d& prior,

@@ -47,6 +47,18 @@ FitInformation InformationOfFit(const FittedInliers& fit, const GroupedMatches& 
                                 const MatchErrors& errors, const NoiseModel& noise,
                                 const Pose& pose);
 
+// How the cost rises along the motions that the matches determine worst, over how it would with the
+// curvature S. Far below 1 the minimum is a narrow one that noise made in a wider valley.
+struct CostRise {
+  double least = 1.0;                     // of some steps of three standard deviations
+  Matrix6d widening = Matrix6d::Zero();  // what the covariance lacks
+};
+// With |t| as it is.
+CostRise RiseOfCost(const FittedInliers& fit, const GroupedMatches& matches,
+                    const NoiseModel& noise, const Pose& pose, const Matrix6d& S);
+// Recorded drives have 0.9 and more, that wall 0.07 to 0.98.
+inline constexpr double kMinRise = 0.7;
+
 // S^-1 within the free directions B = `basis`, S = curvature + P, where P = `prior` is the
 // information of the prior. S is taken as `min_share` to all of the observed information in any
 // direction: near an epipole errors are so curved that it may be more. False if that is singular.

@@ -205,15 +205,23 @@ void DescribeObservability(const RefineOptions& options, const GroupedMatches& m
     // The fitted point is the rig's centre, or the body's origin if |t| is held.
     const Matrix6d to_rig =
         BodyFromPointJacobian(fit.pose.R, Eigen::Vector3d(-RigCentre(matches.rig())));
-    const FitCovariance parts = CovarianceOfFit(information, prior, inverse);
+    FitCovariance parts = CovarianceOfFit(information, prior, inverse);
+    CostRise rise;
+    if (inliers.is_minimum && basis.cols() >= 5) {
+      rise = RiseOfCost(inliers, matches, fit.noise, fit.pose, information.curvature);
+    }
+    parts.noise += rise.widening;
     SetDeviations(to_rig * (parts.noise + parts.calibration) * to_rig.transpose(), body, summary);
     if (information.by_calibration.cols() > 0) {
       SetCalibration(information, inverse,
                      BodyFromPointJacobian(body.R, summary->rig_center) * to_rig, summary);
     }
     const double share = TrueInformation(information, prior, basis);
-    summary->covariance_valid = share >= kMinTrueInformation;
-    if (!summary->covariance_valid) {
+    summary->covariance_valid = share >= kMinTrueInformation && rise.least >= kMinRise;
+    if (share >= kMinTrueInformation && !summary->covariance_valid) {
+      summary->covariance_note =
+          "the minimum is one of several that the noise makes in a wider valley of the cost";
+    } else if (!summary->covariance_valid) {
       char text[160];
       std::snprintf(text, sizeof(text),
                     "only %.0f percent of the information in one direction of the motion are not "

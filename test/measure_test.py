@@ -189,6 +189,16 @@ class Commands(unittest.TestCase):
         self.assertEqual([turn["pairs"] for turn in figures["turns"]], [2])
         self.assertLess(figures["drives"][0]["end_percent"], 2)
 
+    def test_motion_error(self):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([os.path.join(FOLDER, "rigel_simulate"), "--pairs=2",
+                            "--output=" + folder], capture_output=True, check=True)
+            pairs = self.run_command("motion_error.py", "--matches=" + folder, "--seeds=2",
+                                     "--truth=" + ",".join(measure.match_files(folder)))["pairs"]
+        self.assertEqual(len(pairs), 2)
+        for pair in pairs:
+            self.assertTrue(0 < pair["rotation_deg"] <= pair["rotation_max_deg"] < 0.3, pair)
+
     def test_false_confidence(self):
         with tempfile.TemporaryDirectory() as folder:
             poses = os.path.join(folder, "00.txt")

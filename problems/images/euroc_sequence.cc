@@ -11,7 +11,8 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "rigel/problems/images/stereo_stamps.h"
+#include "rigel/problems/images/frame_stamps.h"
+#include "rigel/problems/images/rig_sequence.h"
 #include "rigel/problems/io/csv.h"
 #include "rigel/problems/io/directory.h"
 #include "rigel/problems/io/input_file.h"
@@ -104,7 +105,9 @@ ImageCamera ParseCamera(const YAML::Node& sensor) {
       Camera::Pinhole(k[0], k[1], k[2], k[3], static_cast<int>(size[0]), static_cast<int>(size[1]));
   const std::vector<double> d =
       Numbers(sensor["distortion_coefficients"], "distortion_coefficients", 4);
-  result.distortion = RadialTangential{d[0], d[1], d[2], d[3]};
+  result.lens = camera.intrinsics;
+  result.lens->model = CameraModel::kOpencv;
+  std::copy(d.begin(), d.end(), result.lens->parameters + k.size());
   return result;
 }
 
@@ -218,17 +221,14 @@ std::optional<Pose> Interpolate(const Poses& poses, int64_t time) {
   return Pose::FromQuaternion(q, (1 - share) * before->second.t + share * after->second.t);
 }
 
-// A name that can stand in a match file: no blanks, printable.
-std::string SequenceName(const fs::path& mav) {
+// The name of the folder that holds mav0.
+std::string NameOfFolder(const fs::path& mav) {
   std::error_code code;
   fs::path full = fs::canonical(mav, code);
   if (code) full = mav;
   std::string name = full.filename().string();
   if (name == "mav0") name = full.parent_path().filename().string();
-  for (char& c : name) {
-    if (c <= ' ' || c > '~') c = '_';
-  }
-  return name.empty() ? "euroc" : name;
+  return name.empty() ? "euroc" : SequenceName(name);
 }
 
 // How many images of a camera have no partner; empty if none.
@@ -245,31 +245,17 @@ Stamps StampsOf(const Images& images) {
   return stamps;
 }
 
-std::string Milliseconds(int64_t nanoseconds) {
-  return CsvNumber(static_cast<double>(nanoseconds) / 1e6) + " ms";
-}
-
 // The frames of the images of both cameras. False, with what is wrong, if there are none.
 bool PairImages(const Images (&images)[2], const EurocOptions& options, ImageSequence* sequence,
                 Stamps* times, std::string* what) {
-  const Stamps stamps[2] = {StampsOf(images[0]), StampsOf(images[1])};
-  // Nanoseconds: larger doubles cannot be converted to int64_t.
-  constexpr double kMaxTolerance = 9e18;
-  const int64_t tolerance = options.sync_tolerance_ms
-                                ? static_cast<int64_t>(std::min(
-                                      std::round(*options.sync_tolerance_ms * 1e6), kMaxTolerance))
-                                : DefaultSyncTolerance(stamps[0]);
-  const std::string within = Milliseconds(tolerance) +
-                             (options.sync_tolerance_ms ? "" : ", a tenth of the frame interval") +
-                             " (--sync_tolerance_ms)";
-  int64_t largest = 0;
-  for (const auto& [k, partner] : PairStamps(stamps[0], stamps[1], tolerance)) {
-    const int64_t time = stamps[0][k], other = stamps[1][partner];
-    largest = std::max(largest, std::abs(other - time));
-    times->push_back(time);
+  const std::vector<Stamps> stamps = {StampsOf(images[0]), StampsOf(images[1])};
+  const StampFrames grouped = GroupStamps(stamps, options.sync_tolerance_ms);
+  for (const StampFrame& both : grouped.frames) {
+    if (both.images[0] < 0 || both.images[1] < 0) continue;
+    times->push_back(both.time);
     ImageFrame frame;
-    frame.images = {images[0].at(time), images[1].at(other)};
-    frame.time = static_cast<double>(time) * kSecondsPerNanosecond;
+    frame.images = {images[0].at(both.time), images[1].at(stamps[1][both.images[1]])};
+    frame.time = static_cast<double>(both.time) * kSecondsPerNanosecond;
     sequence->frames.push_back(std::move(frame));
   }
   if (times->empty()) {
@@ -277,15 +263,14 @@ bool PairImages(const Images (&images)[2], const EurocOptions& options, ImageSeq
     for (const auto& [k, partner] : PairStamps(stamps[0], stamps[1], least)) {
       least = std::min(least, std::abs(stamps[1][partner] - stamps[0][k]));
     }
-    *what = "no image of cam1 is of the time of one of cam0, within " + within +
+    *what = "no image of cam1 is of the time of one of cam0, within " + grouped.within +
             "; the nearest are " + Milliseconds(least) + " apart";
     return false;
   }
-  if (largest > 0) {
-    sequence->sync_tolerance =
-        options.sync_tolerance_ms ? CsvNumber(*options.sync_tolerance_ms) : "default";
+  if (grouped.largest > 0) {
+    sequence->settings.push_back(grouped.setting);
     sequence->notes.push_back("time stamps of cam0 and cam1 differ by up to " +
-                              Milliseconds(largest) + ", within " + within);
+                              Milliseconds(grouped.largest) + ", within " + grouped.within);
   }
   return true;
 }
@@ -293,11 +278,7 @@ bool PairImages(const Images (&images)[2], const EurocOptions& options, ImageSeq
 }  // namespace
 
 bool EurocOptions::IsValid(std::string* error) const {
-  if (!sync_tolerance_ms || (std::isfinite(*sync_tolerance_ms) && *sync_tolerance_ms >= 0)) {
-    return true;
-  }
-  *error = "sync_tolerance_ms: expected a number from 0";
-  return false;
+  return IsSyncTolerance(sync_tolerance_ms, error);
 }
 
 bool ReadEurocSequence(const std::string& root, const EurocOptions& options,
@@ -312,8 +293,9 @@ bool ReadEurocSequence(const std::string& root, const EurocOptions& options,
     return false;
   }
   ImageSequence result;
-  result.name = SequenceName(mav);
+  result.name = NameOfFolder(mav);
   result.world_down = -Eigen::Vector3d::UnitZ();
+  result.camera_pairs = {{0, 1}};
 
   Images images[2];
   for (int k = 0; k < 2; ++k) {

@@ -1,9 +1,7 @@
 #include "rigel/problems/images/image_features.h"
 
 #include <cmath>
-#include <cstdint>
 
-#include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
 
@@ -24,7 +22,7 @@ constexpr float kOrbScale = 1.2f;  // between two levels of the pyramid, as Open
 
 // The true position of a key point. OpenCV's SIFT starts with the image at twice its size, whose
 // pixel x lies at x/2 - 1/4, but reports x/2.
-cv::Point2d SiftPixel(const cv::KeyPoint& point) {
+Pixel SiftPixel(const cv::KeyPoint& point) {
   // Pixels: the quarter of the formula above.
   constexpr double kShift = 0.25;
   return {point.pt.x - kShift, point.pt.y - kShift};
@@ -32,7 +30,7 @@ cv::Point2d SiftPixel(const cv::KeyPoint& point) {
 
 // ORB reports the pixel of its level times the nominal scale. But levels have whole numbers of
 // pixels, and it is their corners that coincide, not the centres of their first pixels.
-cv::Point2d OrbPixel(const cv::KeyPoint& point, const cv::Size& size) {
+Pixel OrbPixel(const cv::KeyPoint& point, const cv::Size& size) {
   const float scale = std::pow(kOrbScale, static_cast<float>(point.octave));
   const auto whole = [&](float x, int length) {
     const double of_level = std::round(x / scale);
@@ -42,33 +40,49 @@ cv::Point2d OrbPixel(const cv::KeyPoint& point, const cv::Size& size) {
   return {whole(point.pt.x, size.width), whole(point.pt.y, size.height)};
 }
 
-// Pixels of the undistorted camera; empty `distortion` changes nothing. *valid[k] is false where
-// the distortion cannot be inverted: far outside of the lens's model.
-void Undistort(const ImageCamera& camera, std::vector<cv::Point2d>* points,
-               std::vector<bool>* valid) {
-  valid->assign(points->size(), true);
-  if (!camera.distortion || points->empty()) return;
-  // Iterations of OpenCV's fixed-point method, which converges slowly where distortion is strong.
-  // kMaxError finds the points that need more.
-  constexpr int kMaxIterations = 50;
-  constexpr double kEpsilon = 1e-6;   // px, where it ends: far below the noise
-  constexpr double kMaxError = 1e-2;  // px, of a point that was distorted again
-  const Camera& c = camera.camera.intrinsics;
-  const RadialTangential& d = *camera.distortion;
-  const cv::Matx33d K(c.fx(), 0, c.cx(), 0, c.fy(), c.cy(), 0, 0, 1);
-  std::vector<cv::Point2d> normalized;
-  cv::undistortPoints(
-      *points, normalized, K, cv::Vec4d(d.k1, d.k2, d.p1, d.p2), cv::noArray(), cv::noArray(),
-      cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kMaxIterations, kEpsilon));
-  for (size_t k = 0; k < points->size(); ++k) {
-    const Eigen::Vector2d u(normalized[k].x, normalized[k].y);
-    const Eigen::Vector2d again = d.Distort(u);
-    const cv::Point2d& seen = (*points)[k];
-    const double error =
-        std::hypot(c.fx() * again.x() + c.cx() - seen.x, c.fy() * again.y() + c.cy() - seen.y);
-    (*valid)[k] = error <= kMaxError;
-    (*points)[k] = {c.fx() * u.x() + c.cx(), c.fy() * u.y() + c.cy()};
+// Moves a pixel of the lens to that of the pinhole `camera` that sees the same ray. False where the
+// lens has no ray, or the pinhole no pixel of it.
+bool Undistort(const Camera& lens, const Camera& camera, Pixel* pixel) {
+  Eigen::Vector3d ray;
+  return Unproject(lens, *pixel, &ray) && Project(camera, ray, pixel);
+}
+
+// The pixel as match files have it. False where the camera has no ray.
+bool ToFilePixel(const ImageCamera& camera, Pixel* pixel) {
+  if (camera.lens && !Undistort(*camera.lens, camera.camera.intrinsics, pixel)) return false;
+  *pixel = {RoundedToFile(pixel->x()), RoundedToFile(pixel->y())};
+  Eigen::Vector3d ignored;
+  return Unproject(camera.camera.intrinsics, *pixel, &ignored);
+}
+
+// Where the mask is not black, as OpenCV's masks are. False with a message if it is no image of
+// this size.
+bool ReadMask(const std::string& path, const cv::Size& size, cv::Mat* mask, std::string* error) {
+  if (!ReadImage(path, mask, error)) return false;
+  if (mask->size() == size) return true;
+  *error = Printable(path) + ": a mask of " + std::to_string(mask->cols) + " x " +
+           std::to_string(mask->rows) + " pixels, expected " + std::to_string(size.width) + " x " +
+           std::to_string(size.height) + " as the image has";
+  return false;
+}
+
+// The strongest key points that the mask (empty: none) leaves, at most options.max_features, with
+// their descriptors. OpenCV's SIFT counts before it masks, so that it is given no limit.
+void Detect(const FeatureOptions& options, const cv::Mat& image, const cv::Mat& mask,
+            std::vector<cv::KeyPoint>* points, cv::Mat* descriptors) {
+  if (options.type == FeatureType::kOrb) {
+    cv::ORB::create(options.max_features, kOrbScale)
+        ->detectAndCompute(image, mask, *points, *descriptors);
+    return;
   }
+  const cv::Ptr<cv::SIFT> sift = cv::SIFT::create(mask.empty() ? options.max_features : 0);
+  if (mask.empty()) {
+    sift->detectAndCompute(image, mask, *points, *descriptors);
+    return;
+  }
+  sift->detect(image, *points, mask);
+  cv::KeyPointsFilter::retainBest(*points, options.max_features);
+  sift->compute(image, *points, *descriptors);
 }
 
 }  // namespace
@@ -94,7 +108,8 @@ bool FeatureOptions::IsValid(std::string* error) const {
 }
 
 bool ExtractFeatures(const FeatureOptions& options, const ImageCamera& camera,
-                     const std::string& path, ImageFeatures* features, std::string* error) try {
+                     const std::string& path, const std::string& mask_path, ImageFeatures* features,
+                     std::string* error) try {
   cv::Mat image;
   if (!ReadImage(path, &image, error)) return false;
   const Camera& c = camera.camera.intrinsics;
@@ -104,31 +119,20 @@ bool ExtractFeatures(const FeatureOptions& options, const ImageCamera& camera,
              std::to_string(c.height) + " as the calibration says";
     return false;
   }
-  const bool sift = options.type == FeatureType::kSift;
-  cv::Ptr<cv::Feature2D> extractor;
-  if (sift) {
-    extractor = cv::SIFT::create(options.max_features);
-  } else {
-    extractor = cv::ORB::create(options.max_features, kOrbScale);
-  }
+  cv::Mat mask;
+  if (!mask_path.empty() && !ReadMask(mask_path, image.size(), &mask, error)) return false;
   std::vector<cv::KeyPoint> points;
   cv::Mat descriptors;
-  extractor->detectAndCompute(image, cv::noArray(), points, descriptors);
-
-  std::vector<cv::Point2d> pixels;
-  pixels.reserve(points.size());
-  for (const cv::KeyPoint& point : points) {
-    pixels.push_back(sift ? SiftPixel(point) : OrbPixel(point, image.size()));
-  }
-  std::vector<bool> valid;
-  Undistort(camera, &pixels, &valid);
+  Detect(options, image, mask, &points, &descriptors);
 
   ImageFeatures result;
   result.width = image.cols;
   result.height = image.rows;
-  for (size_t k = 0; k < pixels.size(); ++k) {
-    if (!valid[k]) continue;
-    result.pixels.emplace_back(RoundedToFile(pixels[k].x), RoundedToFile(pixels[k].y));
+  const bool sift = options.type == FeatureType::kSift;
+  for (size_t k = 0; k < points.size(); ++k) {
+    Pixel pixel = sift ? SiftPixel(points[k]) : OrbPixel(points[k], image.size());
+    if (!ToFilePixel(camera, &pixel)) continue;
+    result.pixels.push_back(pixel);
     result.descriptors.push_back(descriptors.row(static_cast<int>(k)));
   }
   // SIFT's numbers are integers from 0 to 255 in float.

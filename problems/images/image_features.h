@@ -32,15 +32,19 @@ struct FeatureOptions {
 
 struct ImageFeatures {
   int width = 0, height = 0;
-  // Undistorted. The centre of the first pixel is (0, 0), as it is for the principal point.
-  std::vector<Eigen::Vector2d> pixels;
+  // Those of ImageCamera::camera. The centre of the first pixel is (0, 0), as it is for the
+  // principal point.
+  std::vector<Pixel> pixels;
   cv::Mat descriptors;  // a row a pixel: 16-bit integers for SIFT, bits for ORB
 };
 
-// Reads an image as grey and finds its key points. The same image gives the same features. False
-// with a message if the file is not an image, or not of the camera's size where that is known.
+// Reads an image as grey and finds its key points, none where the image of `mask` is black; that
+// may be empty. A key point whose pixel has no ray is dropped. The same image gives the same
+// features. False with a message if a file is not an image, or not of the camera's size where that
+// is known.
 bool ExtractFeatures(const FeatureOptions& options, const ImageCamera& camera,
-                     const std::string& path, ImageFeatures* features, std::string* error);
+                     const std::string& path, const std::string& mask, ImageFeatures* features,
+                     std::string* error);
 
 // Four decimals: what a pixel or a ratio is accurate to. They keep the files small.
 double RoundedToFile(double value);

@@ -17,31 +17,21 @@
 
 namespace rigel {
 
-// Lens distortion of normalized image points, r2 = x^2 + y^2:
-//   x' = x (1 + k1 r2 + k2 r2^2) + 2 p1 x y + p2 (r2 + 2 x^2)
-//   y' = y (1 + k1 r2 + k2 r2^2) + 2 p2 x y + p1 (r2 + 2 y^2)
-struct RadialTangential {
-  double k1 = 0.0, k2 = 0.0, p1 = 0.0, p2 = 0.0;
-
-  Eigen::Vector2d Distort(const Eigen::Vector2d& undistorted) const {
-    const double x = undistorted.x(), y = undistorted.y();
-    const double r2 = x * x + y * y;
-    const double radial = 1.0 + (k1 + k2 * r2) * r2;
-    return {x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
-            y * radial + 2 * p2 * x * y + p1 * (r2 + 2 * y * y)};
-  }
-};
-
 struct ImageCamera {
-  // intrinsics.width and height are 0 where only the images tell them.
+  // What match files say. intrinsics.width and height are 0 where only the images tell them.
   RigCamera camera;
-  std::optional<RadialTangential> distortion;  // none: the images are undistorted
+  // The lens that took the images, where pixels are moved to those of `camera`, a pinhole. None:
+  // the pixels of `camera` are those of the images.
+  std::optional<Camera> lens;
 };
 
 struct ImageFrame {
-  std::vector<std::string> images;  // paths, one a camera; whether they are there is not checked
-  std::optional<double> time;       // seconds
+  // Paths, one a camera; whether they are there is not checked. Empty: the camera has no image, and
+  // the frame consists of those of the others.
+  std::vector<std::string> images;
+  std::optional<double> time;           // seconds
   std::optional<Pose> world_from_body;  // ground truth
+  std::vector<std::string> masks = {};  // paths, one a camera, empty where it has none; or no entry
 };
 
 // Frames by their numbers, 0 to size() - 1. Numbers that a data set leaves out have no frame and
@@ -86,13 +76,17 @@ class ImageFrames {
 struct ImageSequence {
   std::string name;
   std::vector<ImageCamera> cameras;
+  // Pairs i < j of cameras whose images are matched with each other. Each camera is always matched
+  // with itself at another time.
+  std::vector<std::pair<int, int>> camera_pairs;
+  std::optional<Eigen::Vector3d> forward;  // of the body frame, unit, if it is known
   ImageFrames frames;
   // Where a camera's image of a frame that is not there would be; empty if all are there.
   std::function<std::string(int frame, int camera)> image_path;
   Eigen::Vector3d world_down = Eigen::Vector3d::UnitY();  // unit; the world of world_from_body
-  // The tolerance if images of one frame differ in time: "default", or milliseconds. It determines
-  // which images are a frame, and so the numbers of the frames.
-  std::string sync_tolerance;
+  // What determines which images are a frame, and so the numbers of the frames: a name and a value
+  // each. Runs that fill one directory must agree in it.
+  std::vector<std::string> settings;
   // Notes for the user that are no errors: frames left out, frames without ground truth, cameras
   // that are not used, differences of the cameras' time stamps.
   std::vector<std::string> notes;

@@ -195,6 +195,7 @@ bool ReadKittiSequence(const std::string& root, const std::string& name, ImageSe
   }
   ImageSequence result;
   result.name = name;
+  result.camera_pairs = {{0, 1}};
   std::array<int, 2> cameras;
   if (!FindCameras(directory, &cameras, error) ||
       !ReadCalibration((directory / "calib.txt").string(), cameras, &result.cameras, error)) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <initializer_list>
 #include <system_error>
 
 #include "rigel/problems/io/csv.h"
@@ -20,10 +19,15 @@ namespace fs = std::filesystem;
 
 constexpr char kSettingsName[] = "rigel_match.settings";
 
-std::string NumbersText(std::initializer_list<double> numbers) {
+std::string NumbersText(const std::vector<double>& numbers) {
   std::string text;
   for (const double number : numbers) text += " " + CsvNumber(number);
   return text + "\n";
+}
+
+// The parameters from number `first` on.
+std::string LensNumbers(const Camera& c, int first) {
+  return NumbersText({c.parameters + first, c.parameters + NumCameraParameters(c.model)});
 }
 
 // The settings that all files of a directory must share: the options, and the calibration and
@@ -41,23 +45,26 @@ std::string SettingsText(const SequenceMatchingOptions& options, const ImageSequ
           any([](const ImageFrame& frame) { return frame.world_from_body.has_value(); });
   text +=
       std::string("times ") + any([](const ImageFrame& frame) { return frame.time.has_value(); });
-  if (!sequence.sync_tolerance.empty()) {
-    text += "sync_tolerance_ms " + sequence.sync_tolerance + "\n";
-  }
+  for (const std::string& setting : sequence.settings) text += setting + "\n";
+  if (options.landmarks) text += "landmarks yes\n";
   for (size_t k = 0; k < sequence.cameras.size(); ++k) {
     const RigCamera& camera = sequence.cameras[k].camera;
     const Camera& c = camera.intrinsics;
     const Eigen::Matrix3d& Q = camera.Q;
     const std::string name = "camera " + std::to_string(k);
-    text += name + " focal" + NumbersText({c.fx(), c.fy()});
-    text += name + " centre" + NumbersText({c.cx(), c.cy()});
+    if (c.model == CameraModel::kPinhole) {
+      text += name + " focal" + NumbersText({c.fx(), c.fy()});
+      text += name + " centre" + NumbersText({c.cx(), c.cy()});
+    } else {
+      text += name + " " + CameraModelName(c.model) + LensNumbers(c, 0);
+    }
     for (int row = 0; row < 3; ++row) {
       text += name + " row " + std::to_string(row) +
               NumbersText({Q(row, 0), Q(row, 1), Q(row, 2), camera.s[row]});
     }
-    if (sequence.cameras[k].distortion) {
-      const RadialTangential& d = *sequence.cameras[k].distortion;
-      text += name + " distortion" + NumbersText({d.k1, d.k2, d.p1, d.p2});
+    if (sequence.cameras[k].lens) {
+      constexpr int kFirst = 4;  // of the parameters of the distortion, after fx fy cx cy
+      text += name + " distortion" + LensNumbers(*sequence.cameras[k].lens, kFirst);
     }
   }
   return text;

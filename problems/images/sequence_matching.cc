@@ -11,6 +11,7 @@
 
 #include "rigel/core/parallel.h"
 #include "rigel/problems/images/feature_matching.h"
+#include "rigel/problems/images/landmark_tracks.h"
 #include "rigel/problems/images/match_directory.h"
 #include "rigel/problems/io/directory.h"
 #include "rigel/problems/io/exception_message.h"
@@ -23,28 +24,45 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// What is known of a frame's images.
+struct FrameFeatures {
+  std::vector<ImageFeatures> images;  // one a camera, without a size where it has no image
+  std::vector<Match> same_time;       // between its cameras, where landmarks are asked for
+};
+
 // The features of a frame while pairs need them: extracted at the first use, released after the
 // last.
-class FrameFeatures {
+class SharedFeatures {
  public:
   void AddUse() { ++uses_; }
 
   // Null if an image cannot be used. Each use ends with Release().
-  std::shared_ptr<const std::vector<ImageFeatures>> Get(const FeatureOptions& options,
-                                                        const ImageSequence& sequence, int frame) {
+  std::shared_ptr<const FrameFeatures> Get(const SequenceMatchingOptions& options,
+                                           const ImageSequence& sequence, int frame) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (features_ != nullptr || !missing_.empty() || !errors_.empty()) return features_;
-    auto features = std::make_shared<std::vector<ImageFeatures>>(sequence.cameras.size());
+    auto features = std::make_shared<FrameFeatures>();
+    features->images.resize(sequence.cameras.size());
     const ImageFrame* const there = sequence.frames.Find(frame);
     for (size_t k = 0; k < sequence.cameras.size(); ++k) {
       std::string error;
       const std::string image =
           there != nullptr ? there->images[k] : sequence.image_path(frame, static_cast<int>(k));
-      if (!ExtractFeatures(options, sequence.cameras[k], image, &(*features)[k], &error)) {
+      if (image.empty()) continue;
+      const std::string mask = there == nullptr || there->masks.empty() ? "" : there->masks[k];
+      if (!ExtractFeatures(options.features, sequence.cameras[k], image, mask, &features->images[k],
+                           &error)) {
         (Exists(image) ? errors_ : missing_).push_back(error);
       }
     }
-    if (missing_.empty() && errors_.empty()) features_ = std::move(features);
+    if (!missing_.empty() || !errors_.empty()) return features_;
+    if (options.landmarks) {
+      for (const auto& [i, j] : sequence.camera_pairs) {
+        AppendMatches(options.features, i, features->images[i], j, features->images[j],
+                      &features->same_time);
+      }
+    }
+    features_ = std::move(features);
     return features_;
   }
 
@@ -59,9 +77,14 @@ class FrameFeatures {
  private:
   std::mutex mutex_;
   int uses_ = 0;
-  std::shared_ptr<const std::vector<ImageFeatures>> features_;
+  std::shared_ptr<const FrameFeatures> features_;
   std::vector<std::string> missing_, errors_;
 };
+
+// "Down" in the body frame; its pose is known.
+Eigen::Vector3d Gravity(const ImageSequence& sequence, const ImageFrame& frame) {
+  return frame.world_from_body->R.transpose() * sequence.world_down;
+}
 
 // All of a pair but its matches and the sizes of the images.
 FramePair MakePair(const ImageSequence& sequence, const FrameIndices& indices) {
@@ -71,33 +94,45 @@ FramePair MakePair(const ImageSequence& sequence, const FrameIndices& indices) {
   FramePair pair;
   pair.sequence = sequence.name;
   for (const ImageCamera& camera : sequence.cameras) pair.rig.cameras.push_back(camera.camera);
+  pair.prior.forward = sequence.forward;
   if (frame1.time && frame2.time) {
     pair.time1 = frame1.time;
     pair.time2 = frame2.time;
   }
   if (frame1.world_from_body && frame2.world_from_body) {
     pair.truth = frame2.world_from_body->Inverse() * *frame1.world_from_body;
-    pair.prior.gravity1 = frame1.world_from_body->R.transpose() * sequence.world_down;
-    pair.prior.gravity2 = frame2.world_from_body->R.transpose() * sequence.world_down;
+    pair.prior.gravity1 = Gravity(sequence, frame1);
+    pair.prior.gravity2 = Gravity(sequence, frame2);
   }
   return pair;
 }
 
 // False with a message if the images of a camera differ in size.
-bool AddMatches(const FeatureOptions& options, const std::vector<ImageFeatures>& features1,
-                const std::vector<ImageFeatures>& features2, FramePair* pair, std::string* error) {
+bool AddMatches(const SequenceMatchingOptions& options,
+                const std::vector<std::pair<int, int>>& camera_pairs,
+                const FrameFeatures& features1, const FrameFeatures& features2, FramePair* pair,
+                std::string* error) {
   for (int k = 0; k < pair->rig.size(); ++k) {
-    if (features1[k].width != features2[k].width || features1[k].height != features2[k].height) {
+    const ImageFeatures &image1 = features1.images[k], &image2 = features2.images[k];
+    if (image1.width == 0 || image2.width == 0) continue;
+    if (image1.width != image2.width || image1.height != image2.height) {
       *error = "the images of camera " + std::to_string(k) + " differ in size";
       return false;
     }
-    pair->rig.cameras[k].intrinsics.width = features1[k].width;
-    pair->rig.cameras[k].intrinsics.height = features1[k].height;
+    pair->rig.cameras[k].intrinsics.width = image1.width;
+    pair->rig.cameras[k].intrinsics.height = image1.height;
   }
+  const std::set<std::pair<int, int>> matched(camera_pairs.begin(), camera_pairs.end());
   for (int i = 0; i < pair->rig.size(); ++i) {
     for (int j = 0; j < pair->rig.size(); ++j) {
-      AppendMatches(options, i, features1[i], j, features2[j], &pair->matches);
+      if (i != j && matched.count({std::min(i, j), std::max(i, j)}) == 0) continue;
+      AppendMatches(options.features, i, features1.images[i], j, features2.images[j],
+                    &pair->matches);
     }
+  }
+  if (options.landmarks) {
+    pair->columns.landmark =
+        LandmarkNumbers(pair->matches, features1.same_time, features2.same_time);
   }
   return true;
 }
@@ -157,8 +192,7 @@ class PairMatcher {
  public:
   PairMatcher(const SequenceMatchingOptions& options, const ImageSequence& sequence,
               std::string directory, const std::vector<FrameIndices>& pairs)
-      : options_(options.features),
-        header_lines_(options.header_lines),
+      : options_(options),
         sequence_(sequence),
         directory_(std::move(directory)),
         pairs_(pairs),
@@ -204,20 +238,19 @@ class PairMatcher {
     if (features1 == nullptr || features2 == nullptr) return false;
     FramePair pair = MakePair(sequence_, indices);
     std::string what;
-    if (!AddMatches(options_, *features1, *features2, &pair, &what)) {
+    if (!AddMatches(options_, sequence_.camera_pairs, *features1, *features2, &pair, &what)) {
       *error = Printable(path) + ": not written: " + what;
       return false;
     }
-    return header_lines_ ? WriteMatchFile(path, pair, header_lines_(pair), error)
-                         : WriteMatchFile(path, pair, error);
+    return options_.header_lines ? WriteMatchFile(path, pair, options_.header_lines(pair), error)
+                                 : WriteMatchFile(path, pair, error);
   }
 
-  const FeatureOptions& options_;
-  const std::function<std::map<std::string, std::string>(const FramePair&)>& header_lines_;
+  const SequenceMatchingOptions& options_;
   const ImageSequence& sequence_;
   const std::string directory_;
   const std::vector<FrameIndices>& pairs_;
-  std::map<int, FrameFeatures> frames_;
+  std::map<int, SharedFeatures> frames_;
   std::vector<std::string> errors_;
   std::vector<char> written_;
 };
@@ -275,6 +308,45 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
   });
   matcher.Report(summary);
   return true;
+}
+
+bool WriteTracks(const SequenceMatchingOptions& options, const ImageSequence& sequence,
+                 const std::string& directory, const std::string& path, TracksSummary* summary,
+                 std::string* error) {
+  *summary = TracksSummary();
+  std::vector<FrameIndices> pairs;
+  int ignored;
+  if (!ListPairs(options, sequence, &pairs, &ignored, error)) return false;
+  Tracks tracks;
+  TrackBuilder builder;
+  std::set<int> frames;
+  int last = -1;
+  for (const FrameIndices& indices : pairs) {
+    const std::string file = (fs::path(directory) / indices.FileName()).string();
+    if (!Exists(file)) continue;  // an image of it could not be used
+    FramePair pair;
+    if (!ReadMatchFile(file, &pair, error)) return false;
+    if (last >= 0) builder.Forget(last);
+    last = indices.frame1;
+    AddPairToTracks(pair, indices.frame1, indices.frame2, &builder);
+    frames.insert({indices.frame1, indices.frame2});
+    tracks.sequence = pair.sequence;
+    tracks.rig = pair.rig;
+  }
+  if (frames.empty()) {
+    *error = Printable(path) + ": not written: there is no match file to make tracks of";
+    return false;
+  }
+  for (const int number : frames) {
+    const ImageFrame& frame = sequence.frames[number];
+    TrackFrame track_frame{number, frame.time, frame.world_from_body, {}};
+    if (frame.world_from_body) track_frame.gravity = Gravity(sequence, frame);
+    tracks.frames.push_back(track_frame);
+  }
+  tracks.observations = builder.Observations();
+  summary->observations = tracks.observations.size();
+  if (!tracks.observations.empty()) summary->landmarks = tracks.observations.back().landmark + 1;
+  return WriteTrackFile(path, tracks, error);
 }
 
 }  // namespace rigel

@@ -2,6 +2,8 @@
 #ifndef RIGEL_PROBLEMS_IMAGES_SEQUENCE_MATCHING_H_
 #define RIGEL_PROBLEMS_IMAGES_SEQUENCE_MATCHING_H_
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
@@ -20,6 +22,9 @@ struct SequenceMatchingOptions {
   int last = -1;  // negative: the last frame of the sequence
   int stride = 1;
   int num_threads = 1;  // the files do not depend on it
+  // Whether the files get the column `landmark` (landmark_tracks.h). For it the images of one frame
+  // are matched with each other as well.
+  bool landmarks = false;
   // Keep the complete files of an earlier run of the same settings, and do the rest.
   bool resume = false;
   // Lines of the header that replace those of a pair (ReplaceHeaderLines() in
@@ -55,6 +60,19 @@ bool MatchSequence(const SequenceMatchingOptions& options, const ImageSequence& 
                    const std::string& directory, const std::function<void(int)>& begin,
                    const std::function<void()>& step, SequenceMatchingSummary* summary,
                    std::string* error);
+
+struct TracksSummary {
+  size_t observations = 0;
+  int64_t landmarks = 0;
+};
+
+// Joins the match files that MatchSequence() wrote to tracks over all frames of the range, and
+// writes them as a track file (problems/io/track_file.h). Without the column `landmark` the matches
+// alone join them. Takes some 150 bytes of memory a key point that is matched. False with a
+// message if a file cannot be read or written.
+bool WriteTracks(const SequenceMatchingOptions& options, const ImageSequence& sequence,
+                 const std::string& directory, const std::string& path, TracksSummary* summary,
+                 std::string* error);
 
 }  // namespace rigel
 

@@ -1,4 +1,4 @@
-// The words of a match file, for its reader and its writer.
+// The words of a match file, for its reader and its writer; track files share some.
 #ifndef RIGEL_PROBLEMS_IO_MATCH_FILE_WORDS_H_
 #define RIGEL_PROBLEMS_IO_MATCH_FILE_WORDS_H_
 
@@ -40,15 +40,24 @@ struct Keyword {
   std::string_view name;
   std::string_view usage;  // the whole line; its words name the columns in messages
   size_t columns;          // or kAnyColumns
+  bool repeats = false;    // whether several lines may begin with it
 };
 
 // Words of a line that says itself how many it has.
 inline constexpr size_t kAnyColumns = 0;
+
+// The lines of cameras, which track files have too.
+inline constexpr Keyword kCameraLine = {
+    "camera", "camera K MODEL PARAMETER ... WIDTH HEIGHT QW QX QY QZ SX SY SZ", kAnyColumns, true};
+inline constexpr Keyword kCameraSigmaLine = {
+    "camera_sigma", "camera_sigma K ROT_DEG POS_M [FOCAL_FRACTION]", kAnyColumns, true};
+inline constexpr Keyword kCameraTimeLine = {"camera_time", "camera_time K DT", 3, true};
+
 inline constexpr std::array<Keyword, kNumKeywords> kKeywords = {{
     {"format", "format rigmatch 1", 3},
-    {"camera", "camera K MODEL PARAMETER ... WIDTH HEIGHT QW QX QY QZ SX SY SZ", kAnyColumns},
-    {"camera_sigma", "camera_sigma K ROT_DEG POS_M [FOCAL_FRACTION]", kAnyColumns},
-    {"camera_time", "camera_time K DT", 3},
+    kCameraLine,
+    kCameraSigmaLine,
+    kCameraTimeLine,
     {"time", "time T1 T2", 3},
     {"truth", "truth QW QX QY QZ TX TY TZ", 8},
     {"gravity1", "gravity1 GX GY GZ", 4},

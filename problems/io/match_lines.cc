@@ -6,6 +6,7 @@
 #include <limits>
 #include <system_error>
 
+#include "rigel/core/angles.h"
 #include "rigel/problems/io/input_file.h"
 #include "rigel/problems/io/parse_number.h"
 #include "rigel/problems/io/printable.h"
@@ -27,11 +28,11 @@ bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 }  // namespace
 
-bool MatchLines::Begin() {
-  std::string what;
+bool MatchLines::Begin(const char* what) {
+  std::string wrong;
   int64_t bad_line;
-  if (!CheckText(&text_, &bad_line, &what)) {
-    return FailAt(bad_line, what + ", expected a match file (UTF-8 text)");
+  if (!CheckText(&text_, &bad_line, &wrong)) {
+    return FailAt(bad_line, wrong + ", expected " + what + " (UTF-8 text)");
   }
   pos_ = text_.data();
   end_ = pos_ + text_.size();
@@ -106,6 +107,23 @@ bool MatchLines::Integer(size_t column, int min, int* value) {
   if (ParseInteger(columns_[column], min, value)) return true;
   return FailColumn(column, "an integer from " + std::to_string(min) + " to " +
                                 std::to_string(std::numeric_limits<int>::max()));
+}
+
+bool MatchLines::SigmaDeg(size_t column, double* radians) {
+  double degrees;
+  if (!PositiveNumber(column, &degrees)) return false;
+  // The smallest doubles become zero in radians.
+  if (!(DegToRad(degrees) > 0)) return FailColumn(column, "a positive number");
+  *radians = DegToRad(degrees);
+  return true;
+}
+
+bool MatchLines::RotationAndVector(size_t column, Pose* pose) {
+  Eigen::Vector4d q;
+  Eigen::Vector3d t;
+  if (!UnitVector(column, "quaternion", &q) || !Vector(column + 4, &t)) return false;
+  *pose = Pose::FromQuaternion(Eigen::Quaterniond(q[0], q[1], q[2], q[3]), t);
+  return true;
 }
 
 bool MatchLines::CheckUnit(const char* what, double norm) {

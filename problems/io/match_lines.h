@@ -1,4 +1,4 @@
-// Lines and columns of match files, for their reader.
+// Lines and columns of match files and track files, for their readers.
 #ifndef RIGEL_PROBLEMS_IO_MATCH_LINES_H_
 #define RIGEL_PROBLEMS_IO_MATCH_LINES_H_
 
@@ -11,11 +11,13 @@
 #include <Eigen/Core>
 
 #include "rigel/core/match.h"
+#include "rigel/core/pose.h"
 #include "rigel/problems/io/match_file_words.h"
 
 namespace rigel {
 
-// The lines of a match file's text, split into columns that are converted with messages.
+// The lines of the text of a match file or a track file, split into columns that are converted with
+// messages.
 //
 // Goes once over the text and keeps no copy of it: columns are views. Messages name the file, the
 // line, the column by its word in the usage, and what was expected. Each function that returns bool
@@ -26,8 +28,8 @@ class MatchLines {
   MatchLines(std::string_view text, const std::string& name, std::string* error)
       : text_(text), name_(name), error_(error) {}
 
-  // To be called first. False if it is not UTF-8 text.
-  bool Begin();
+  // To be called first. False if it is not UTF-8 text. `what` is the expected kind of file.
+  bool Begin(const char* what);
 
   // Splits the next line that has content. False, without a message, at the end of the text; line()
   // is then the last line.
@@ -55,6 +57,10 @@ class MatchLines {
   bool Number(size_t column, double* value);
   bool PositiveNumber(size_t column, double* value);
   bool Integer(size_t column, int min, int* value);
+  bool SigmaDeg(size_t column, double* radians);  // of positive degrees
+
+  // A quaternion w x y z and a vector, from `column` on.
+  bool RotationAndVector(size_t column, Pose* pose);
 
   // The columns column, column + 1, ... as a vector.
   template <int kSize, int kOptions>

@@ -10,6 +10,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "rigel/core/epipolar.h"
+#include "rigel/refine/estimate_motion.h"
 #include "rigel/refine/least_squares/loss.h"
 #include "rigel/refine/least_squares/uncertainty.h"
 #include "rigel/test/core/pinhole.h"
@@ -242,6 +243,34 @@ TEST(FitInformation, TheNoiseMakesMuchOfTheInformationBeforeAWall) {
   EXPECT_GT(share(wall, 0.005), 0.99);
   const FramePair box = ExactPair(200, 2);
   EXPECT_GT(share(box, 0.5), kMinTrueInformation);
+}
+
+// Before a wall noise makes narrow minima in a wide valley. What is called valid there is.
+TEST(FitInformation, NarrowMinimaOfAWideValleyAreNotValid) {
+  Random random(6);
+  int num_valid = 0, num_wrong = 0;
+  for (int index = 0; index < 40; ++index) {
+    FramePair wall = WallPair(&random);
+    wall.matches = WithNoise(wall.matches, 0.5, &random);
+    const MotionEstimate e = EstimateMotion({}, wall);
+    if (!e.refine.covariance_valid || !e.refine.rotation_observable) continue;
+    const Vector6d error = Difference(e.pose, *wall.truth);
+    ++num_valid;
+    num_wrong += error.dot(e.refine.covariance->inverse() * error) > 24.0;  // four times expected
+  }
+  EXPECT_LE(num_wrong, 1) << "of " << num_valid;
+}
+
+TEST(FitInformation, TheCostOfABoxRisesAsTheCurvatureSays) {
+  for (int index = 0; index < 20; ++index) {
+    const FramePair box = ExactPair(200, index);
+    const Problem problem(box.rig, box.matches, *box.truth, 0.5);
+    const FitInformation information = problem.Information();
+    const CostRise rise =
+        RiseOfCost(problem.fit, problem.matches, problem.noise, *box.truth, information.observed);
+    EXPECT_GT(rise.least, 0.9) << index;
+    EXPECT_LT(rise.widening.trace(), 1e-4);
+  }
 }
 
 // The part that a prior adds is true; a direction without information has none that is.

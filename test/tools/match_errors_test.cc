@@ -141,9 +141,17 @@ TEST_F(MatchTest, WrongFlagsAreUsageErrorsAndLeaveNothing) {
       {{"--sequence="}, "--sequence is missing"},
       {{"--sequence=../06"}, "--sequence: expected the name of a directory"},
       {{"--sequence=0 6"}, "--sequence: expected the name of a directory"},
-      {{"--euroc_root=x"}, "--kitti_root and --euroc_root: expected one of them"},
-      {{"--kitti_root="}, "--kitti_root or --euroc_root is missing"},
+      {{"--euroc_root=x"}, "--rig, --kitti_root and --euroc_root: expected one of them"},
+      {{"--kitti_root="}, "--rig, --kitti_root or --euroc_root is missing"},
       {{"--kitti_root=", "--euroc_root=x"}, "--sequence: has no effect with --euroc_root"},
+      {{"--rig=x"}, "--rig, --kitti_root and --euroc_root: expected one of them"},
+      {{"--images=x"}, "--images: has an effect with --rig only"},
+      {{"--camera_pairs=all"}, "--camera_pairs: has an effect with --rig only"},
+      {{"--kitti_root=", "--rig=x", "--frames=never"}, "--frames=never: expected name, order or"},
+      {{"--kitti_root=", "--rig=x", "--sync_tolerance_ms=1"}, "has an effect with --frames=time"},
+      {{"--kitti_root=", "--rig=x", "--frames=time", "--time_unit_s=2"}, "--time_unit_s: expected"},
+      {{"--kitti_root=", "--rig=x", "--frames=time", "--time_unit_s=nan"}, "--time_unit_s: expec"},
+      {{"--tracks=t", "--landmarks=false"}, "--tracks: needs the landmarks"},
   };
   for (const auto& [flags, what] : wrong) {
     const Outcome run = Kitti("out", flags);

@@ -32,7 +32,7 @@ const PlaneScene& Scene() {
 
 ImageCamera Undistorted() {
   ImageCamera camera = Scene().cameras()[0];
-  camera.distortion.reset();
+  camera.lens.reset();
   return camera;
 }
 
@@ -45,12 +45,12 @@ class ImageFeaturesTest : public testing::Test {
   void TearDown() override { std::filesystem::remove_all(directory_); }
 
   ImageFeatures Extract(const FeatureOptions& options, const ImageCamera& camera,
-                        const cv::Mat& image) {
+                        const cv::Mat& image, const std::string& mask = "") {
     const std::string path = directory_ + "/image.png";
     EXPECT_TRUE(cv::imwrite(path, image));
     ImageFeatures features;
     std::string error;
-    EXPECT_TRUE(ExtractFeatures(options, camera, path, &features, &error)) << error;
+    EXPECT_TRUE(ExtractFeatures(options, camera, path, mask, &features, &error)) << error;
     return features;
   }
 
@@ -86,7 +86,7 @@ TEST_F(ImageFeaturesTest, SiftFindsTheCentresOfBlobs) {
   }
   const ImageFeatures features = Extract(Options(FeatureType::kSift), Undistorted(), image);
   std::vector<double> dx, dy;
-  for (const Eigen::Vector2d& pixel : features.pixels) {
+  for (const Pixel& pixel : features.pixels) {
     for (const Eigen::Vector2d& center : centers) {
       if ((pixel - center).norm() > 1) continue;
       dx.push_back(pixel.x() - center.x());
@@ -174,7 +174,7 @@ TEST_F(ImageFeaturesTest, APairOfPixelsOccursOnceThoughKeyPointsHaveSeveralOrien
   const ImageFeatures features = Extract(options, Undistorted(), image);
   using Key = std::tuple<double, double, double, double>;
   std::set<std::pair<double, double>> pixels;
-  for (const Eigen::Vector2d& pixel : features.pixels) pixels.insert({pixel.x(), pixel.y()});
+  for (const Pixel& pixel : features.pixels) pixels.insert({pixel.x(), pixel.y()});
   ASSERT_LT(pixels.size(), features.pixels.size()) << "no key point of several orientations";
   std::vector<Match> matches;
   AppendMatches(options, 0, features, 0, features, &matches);
@@ -256,12 +256,14 @@ TEST_F(ImageFeaturesTest, PixelsThatTheDistortionCannotReachAreDropped) {
   ImageCamera camera = Undistorted();
   const cv::Mat image = Scene().Render(camera, PlaneScene::WorldFromBody(0));
   const size_t all = Extract(FeatureOptions(), camera, image).pixels.size();
-  camera.distortion = RadialTangential{-1.2, 0, 0, 0};  // folds at a radius of 0.53
+  camera.lens = camera.camera.intrinsics;
+  camera.lens->model = CameraModel::kOpencv;
+  camera.lens->parameters[4] = -1.2;  // folds at a radius of 0.53
   const ImageFeatures rest = Extract(FeatureOptions(), camera, image);
   EXPECT_GT(rest.pixels.size(), 20u);
   EXPECT_LT(rest.pixels.size(), all);
   EXPECT_EQ(rest.descriptors.rows, static_cast<int>(rest.pixels.size()));
-  for (const Eigen::Vector2d& pixel : rest.pixels) {
+  for (const Pixel& pixel : rest.pixels) {
     EXPECT_LT(AlongRay(camera.camera.intrinsics, pixel).head<2>().norm(), 0.6);
   }
 }
@@ -278,7 +280,7 @@ TEST_F(ImageFeaturesTest, WhatIsNoImageOfTheCameraIsTold) {
   const auto error_of = [](const std::string& path) {
     ImageFeatures features;
     std::string error;
-    EXPECT_FALSE(ExtractFeatures(FeatureOptions(), Undistorted(), path, &features, &error));
+    EXPECT_FALSE(ExtractFeatures(FeatureOptions(), Undistorted(), path, "", &features, &error));
     EXPECT_THAT(error, testing::StartsWith(path + ": "));
     EXPECT_THAT(error, testing::Not(HasSubstr("\n")));
     return error;

@@ -69,7 +69,7 @@ TEST_F(KittiSequence, GreyCamerasAndAllFramesUpToTheLastImage) {
   EXPECT_EQ(sequence.world_down, Eigen::Vector3d::UnitY());
   ASSERT_EQ(sequence.cameras.size(), 2u);
   for (const ImageCamera& camera : sequence.cameras) {
-    EXPECT_FALSE(camera.distortion.has_value());
+    EXPECT_FALSE(camera.lens.has_value());
     EXPECT_TRUE(camera.camera.Q.isIdentity(0));
     const Camera& c = camera.camera.intrinsics;
     EXPECT_EQ(c.fx(), 707.0912);

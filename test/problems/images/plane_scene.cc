@@ -1,6 +1,8 @@
 #include "rigel/test/problems/images/plane_scene.h"
-#include "rigel/test/core/pinhole.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -39,12 +41,14 @@ cv::Mat MakeTexture() {
 }
 
 ImageCamera MakeCamera(double fx, double fy, double cx, double cy, const Eigen::Quaterniond& q,
-                       const Eigen::Vector3d& s, const RadialTangential& distortion) {
+                       const Eigen::Vector3d& s, const std::array<double, 4>& distortion) {
   ImageCamera camera;
   camera.camera.intrinsics = Camera::Pinhole(fx, fy, cx, cy, 376, 240);
   camera.camera.Q = q.normalized().toRotationMatrix();
   camera.camera.s = s;
-  camera.distortion = distortion;
+  camera.lens = camera.camera.intrinsics;
+  camera.lens->model = CameraModel::kOpencv;
+  std::copy(distortion.begin(), distortion.end(), camera.lens->parameters + 4);
   return camera;
 }
 
@@ -53,13 +57,6 @@ Pose BodyFromCamera(const RigCamera& camera) {
   pose.R = camera.Q;
   pose.t = camera.s;
   return pose;
-}
-
-// The inverse of Distort by fixed-point iteration.
-Eigen::Vector2d Undistort(const RadialTangential& d, const Eigen::Vector2d& distorted) {
-  Eigen::Vector2d u = distorted;
-  for (int k = 0; k < 30; ++k) u += distorted - d.Distort(u);
-  return u;
 }
 
 }  // namespace
@@ -92,8 +89,7 @@ cv::Mat PlaneScene::Render(const ImageCamera& camera, const Pose& world_from_bod
   cv::Mat map(c.height, c.width, CV_32FC2);
   for (int y = 0; y < c.height; ++y) {
     for (int x = 0; x < c.width; ++x) {
-      Eigen::Vector3d u = AlongRay(c, {x, y});
-      if (camera.distortion) u.head<2>() = Undistort(*camera.distortion, u.head<2>());
+      const Eigen::Vector3d u = AlongRay(camera.lens.value_or(c), {x, y});
       const Eigen::Vector3d X = Intersect(world_from_camera.t, world_from_camera.R * u) - kPoint;
       map.at<cv::Vec2f>(y, x) =
           cv::Vec2f(static_cast<float>(kTextureSize / 2 + kPixelsPerMetre * kAcross.dot(X)),
@@ -113,14 +109,18 @@ Eigen::Vector2d PlaneScene::Transfer(const RigCamera& camera1, const Pose& world
   const Pose world_from_camera2 = world_from_body2 * BodyFromCamera(camera2);
   const Eigen::Vector3d X =
       Intersect(world_from_camera1.t, world_from_camera1.R * AlongRay(camera1.intrinsics, pixel1));
-  return ProjectPinhole(camera2.intrinsics, world_from_camera2.Inverse() * X);
+  Eigen::Vector2d pixel2(NAN, NAN);
+  Pixel projected;
+  if (Project(camera2.intrinsics, world_from_camera2.Inverse() * X, &projected)) pixel2 = projected;
+  return pixel2;
 }
 
 int64_t PlaneSceneTime(int frame) { return 1403715273262142976 + frame * INT64_C(50000000); }
 
 std::string SensorYaml(const ImageCamera& camera) {
   const Camera& c = camera.camera.intrinsics;
-  const RadialTangential d = camera.distortion.value_or(RadialTangential());
+  const Camera lens = camera.lens.value_or(c);
+  const double* const d = lens.parameters + 4;
   std::ostringstream text;
   text.precision(17);
   text << "# Default parameters\nsensor_type: camera\ncomment: VI-Sensor\n\nT_BS:\n  cols: 4\n"
@@ -132,7 +132,7 @@ std::string SensorYaml(const ImageCamera& camera) {
   text << "0.0, 0.0, 0.0, 1.0]\n\nrate_hz: 20\nresolution: [" << c.width << ", " << c.height
        << "]\ncamera_model: pinhole\nintrinsics: [" << c.fx() << ", " << c.fy() << ", " << c.cx()
        << ", " << c.cy() << "] #fu, fv, cu, cv\ndistortion_model: radial-tangential\n"
-       << "distortion_coefficients: [" << d.k1 << ", " << d.k2 << ", " << d.p1 << ", " << d.p2
+       << "distortion_coefficients: [" << d[0] << ", " << d[1] << ", " << d[2] << ", " << d[3]
        << "]\n\n";
   return text.str();
 }
@@ -195,7 +195,7 @@ void WriteKittiScene(const PlaneScene& scene, int num_frames, const std::string&
     for (int k = 0; k < 2; ++k) {
       // The right camera is half a metre beside the left one.
       ImageCamera camera = scene.cameras()[0];
-      camera.distortion.reset();
+      camera.lens.reset();
       camera.camera.intrinsics.parameters[1] = camera.camera.intrinsics.fx();
       camera.camera.s += camera.camera.Q * Eigen::Vector3d(0.5 * k, 0, 0);
       char image[32];

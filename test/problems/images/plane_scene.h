@@ -26,7 +26,8 @@ class PlaneScene {
   // What the camera sees, distorted if it is.
   cv::Mat Render(const ImageCamera& camera, const Pose& world_from_body) const;
 
-  // The undistorted pixel in camera j at time 2 of what is at `pixel1` in camera i at time 1.
+  // The pixel in camera j at time 2 of what is at `pixel1` in camera i at time 1; NaN if there is
+  // none.
   Eigen::Vector2d Transfer(const RigCamera& camera1, const Pose& world_from_body1,
                            const Eigen::Vector2d& pixel1, const RigCamera& camera2,
                            const Pose& world_from_body2) const;

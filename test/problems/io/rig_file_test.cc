@@ -37,7 +37,8 @@ TEST(RigFile, ReadsEveryField) {
   const RigFile file = MustRead(
       R"({"format": "rigel-rig 1", "name": "car", "ground_m": 0.4, "down": [0, 0, -1],
           "forward": [1, 0, 0], "cameras": [
-          {"name": "front", "model": "pinhole", "parameters": [700, 701, 320, 240], )" +
+          {"name": "front", "images": "a/{frame}.png", "model": "pinhole",
+           "parameters": [700, 701, 320, 240], )" +
       std::string(kRest) + R"(, {"model": "opencv", "parameters": [1, 2, 3, 4, 0, 0, 0, 1e-3], )" +
       kRest + "]}");
   EXPECT_EQ(file.name, "car");
@@ -45,6 +46,7 @@ TEST(RigFile, ReadsEveryField) {
   EXPECT_EQ(file.down, -Eigen::Vector3d::UnitZ());
   EXPECT_EQ(file.forward, Eigen::Vector3d::UnitX());
   EXPECT_EQ(file.camera_names, (std::vector<std::string>{"front", "1"}));
+  EXPECT_EQ(file.camera_images, (std::vector<std::string>{"a/{frame}.png", ""}));
   EXPECT_EQ(file.rig.cameras[1].intrinsics.parameters[7], 1e-3);
   ASSERT_EQ(file.rig.size(), 2);
   const RigCamera& camera = file.rig.cameras[0];
