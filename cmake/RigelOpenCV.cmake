@@ -1,5 +1,5 @@
-# What rigel_match needs beside the rest: OpenCV and yaml-cpp. Sets RIGEL_HAS_OPENCV, and with it the targets
-# rigel_opencv and rigel_yaml. Nothing that is installed for others to link depends on them.
+# What rigel_match needs beside the rest: OpenCV, and yaml-cpp of RigelYaml.cmake. Sets RIGEL_HAS_OPENCV, and with it the
+# target rigel_opencv. Nothing that is installed for others to link depends on it.
 set(RIGEL_HAS_OPENCV FALSE)
 if(NOT RIGEL_WITH_OPENCV)
   return()
@@ -25,8 +25,7 @@ else()
     endif()
   endforeach()
 endif()
-find_package(yaml-cpp QUIET)
-if(NOT yaml-cpp_FOUND)
+if(NOT RIGEL_HAS_YAML)
   list(APPEND missing yaml-cpp)
 endif()
 
@@ -40,9 +39,3 @@ set(RIGEL_HAS_OPENCV TRUE)
 add_library(rigel_opencv INTERFACE)
 target_include_directories(rigel_opencv SYSTEM INTERFACE ${RIGEL_OPENCV_INCLUDE_DIR})
 target_link_libraries(rigel_opencv INTERFACE ${RIGEL_OPENCV_LIBRARIES})
-add_library(rigel_yaml INTERFACE)
-if(TARGET yaml-cpp::yaml-cpp)
-  target_link_libraries(rigel_yaml INTERFACE yaml-cpp::yaml-cpp)
-else()
-  target_link_libraries(rigel_yaml INTERFACE yaml-cpp)
-endif()

@@ -30,6 +30,7 @@ MAY_USE = {
     "problems/io": "core",
     "problems/sensors": "core problems/io",
     "problems/scenes": "core problems/io",
+    "problems/rigs": "core problems/io",
     "problems/images": "core problems/io",
     "problems/trajectories": "core refine problems/io",
     "problems/calibration": "core problems/io",
@@ -39,8 +40,9 @@ MAY_USE = {
         "core minimal minimal/ransac refine/least_squares refine problems/io problems/scenes problems/evaluation",
     "problems/experiments": "core minimal problems/io problems/scenes problems/evaluation",
     "tools":
-        "core minimal refine/least_squares refine problems/io problems/sensors problems/scenes problems/images "
-        "problems/trajectories problems/calibration problems/evaluation problems/benchmarks problems/experiments",
+        "core minimal refine/least_squares refine problems/io problems/sensors problems/scenes problems/rigs "
+        "problems/images problems/trajectories problems/calibration problems/evaluation problems/benchmarks "
+        "problems/experiments",
 }
 
 FEWEST_PUBLIC, MOST_PUBLIC, MOST_INSTALLED = 12, 25, 30

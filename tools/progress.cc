@@ -5,6 +5,8 @@
 #include <iostream>
 #include <utility>
 
+#include "rigel/problems/io/progress_text.h"
+
 namespace rigel {
 
 Progress::Progress(std::string what, int total)
@@ -15,10 +17,17 @@ Progress::~Progress() {
 }
 
 void Progress::Step() {
-  if (!terminal_) return;
+  constexpr std::chrono::seconds kBetweenLines(30);  // of a file: a night has a thousand
   const std::lock_guard<std::mutex> lock(mutex_);
   ++done_;
-  Show("");
+  if (terminal_) {
+    Show("");
+    return;
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (now - noted_ < kBetweenLines) return;
+  noted_ = now;
+  std::cerr << Text() + "\n" << std::flush;
 }
 
 void Progress::Note(const std::function<std::string()>& text) {
@@ -32,9 +41,14 @@ void Progress::Note(const std::function<std::string()>& text) {
   Show("; " + text());
 }
 
+std::string Progress::Text() const {
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
+  return what_ + ": " + ProgressText(done_, total_, elapsed.count());
+}
+
 void Progress::Show(const std::string& note) {
   shown_ = true;
-  std::cerr << "\r" << what_ << ": " << done_ << " of " << total_ << note << "\033[K" << std::flush;
+  std::cerr << "\r" << Text() << note << "\033[K" << std::flush;
 }
 
 }  // namespace rigel

@@ -5,6 +5,7 @@
   rigel_plot.py report.json                rigel_compare --json: cumulative error curves (with
                                            --per_pair) or bars of the medians
   rigel_plot.py benchmark.json             rigel_benchmark --json: bars of the solvers' times
+  rigel_plot.py rig.json                   a rig file: the rig from above and from the side
   rigel_plot.py --estimate=E --truth=T     two trajectories from above, in KITTI format (12 numbers
                                            per line) or TUM format (time x y z qx qy qz qw)
 
@@ -21,10 +22,16 @@ from rigel_plot_style import plt
 from rigel_plot_experiment import plot_experiment
 from rigel_plot_page import Page
 from rigel_plot_report import plot_benchmark, plot_report
+from rigel_plot_rig import plot_rig
 from rigel_plot_trajectory import direction, plot_trajectory
 
-EXPERIMENT, REPORT, BENCHMARK, CLAIMS = FORMATS = (
-    "rigel-experiment 1", "rigel-report 1", "rigel-benchmark 1", "rigel-claims 1")
+EXPERIMENT, REPORT, BENCHMARK, CLAIMS, RIG = FORMATS = (
+    "rigel-experiment 1", "rigel-report 1", "rigel-benchmark 1", "rigel-claims 1", "rigel-rig 1")
+
+
+def kind_of(report):
+    """Its format. Older rig files have none."""
+    return report.get("format", RIG if "cameras" in report else None)
 
 
 def need_results(report, key, path):
@@ -35,7 +42,9 @@ def need_results(report, key, path):
 def plot_file(path, report):
     """(name, figure) of each figure of a report."""
     stem = os.path.splitext(os.path.basename(path))[0]
-    kind = report.get("format")
+    kind = kind_of(report)
+    if kind == RIG:
+        return plot_rig(report, stem, path)
     if kind == EXPERIMENT:
         # It names files.
         if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*", report["experiment"]):
@@ -74,7 +83,7 @@ def inputs_of(paths):
             file = os.path.join(path, name)
             try:
                 report = read_json(file)
-                if report.get("format") not in FORMATS:
+                if kind_of(report) not in FORMATS:
                     raise Bad(f"{file}: its format is {report.get('format')!r}")
             except Bad as error:
                 print(printable(f"rigel_plot.py: left out: {error}"), file=sys.stderr)
@@ -87,7 +96,7 @@ def inputs_of(paths):
 
 def add_report(page, path, report):
     """A report's figures, with the table beside it, or its claims."""
-    kind = report.get("format")
+    kind = kind_of(report)
     try:
         if kind == CLAIMS:
             page.add_claims(report)

@@ -10,10 +10,12 @@
 #include <Eigen/Geometry>
 
 #include "rigel/core/angles.h"
+#include "rigel/core/pose.h"
 #include "rigel/problems/io/input_file.h"
 #include "rigel/problems/io/json_message.h"
 #include "rigel/problems/io/json_text.h"
 #include "rigel/problems/io/printable.h"
+#include "rigel/problems/io/whole_file.h"
 
 namespace rigel {
 namespace {
@@ -202,6 +204,33 @@ RigFile ReadRig(std::string_view text) {
   return file;
 }
 
+// "key": value, for the text of a file. Names may have any bytes.
+std::string Entry(const char* key, const Json& value) {
+  return std::string("\"") + key +
+         "\": " + value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Json Numbers(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+std::string CameraText(const RigCamera& camera, const std::string& name,
+                       const std::string& images) {
+  const Camera& lens = camera.intrinsics;
+  const auto* const end = lens.parameters + NumCameraParameters(lens.model);
+  const Eigen::Quaterniond q = Pose{camera.Q, camera.s}.Quaternion();
+  std::string text =
+      "  {" + Entry("name", name) + ", " + Entry("model", CameraModelName(lens.model)) + ",\n   " +
+      Entry("parameters", std::vector<double>(lens.parameters, end)) + ",\n   " +
+      Entry("width", lens.width) + ", " + Entry("height", lens.height) + ",\n   " +
+      Entry("q", {q.w(), q.x(), q.y(), q.z()}) + ",\n   " + Entry("s", Numbers(camera.s));
+  if (camera.rotation_sigma > 0 && camera.position_sigma > 0) {
+    text +=
+        ",\n   " + Entry("camera_sigma", {RadToDeg(camera.rotation_sigma), camera.position_sigma});
+  }
+  if (camera.time_offset != 0) text += ",\n   " + Entry("time_offset", camera.time_offset);
+  if (!images.empty()) text += ",\n   " + Entry("images", images);
+  return text + "}";
+}
+
 }  // namespace
 
 bool ParseRigFile(std::string_view text, const std::string& name, RigFile* rig,
@@ -222,6 +251,28 @@ bool ReadRigFile(const std::string& path, RigFile* rig, std::string* error) {
   InputBytes bytes;
   return ReadInputFile(path, &bytes, error) &&
          ParseRigFile(bytes.text(), InputName(path), rig, error);
+}
+
+std::string RigFileText(const RigFile& rig) {
+  std::string text = "{" + Entry("format", "rigel-rig 1");
+  if (!rig.name.empty()) text += ",\n " + Entry("name", rig.name);
+  if (rig.ground_m) text += ",\n " + Entry("ground_m", *rig.ground_m);
+  if (rig.down) text += ",\n " + Entry("down", Numbers(*rig.down));
+  if (rig.forward) text += ",\n " + Entry("forward", Numbers(*rig.forward));
+  text += ",\n \"cameras\": [";
+  for (size_t k = 0; k < rig.rig.cameras.size(); ++k) {
+    const auto of_camera = [&](const std::vector<std::string>& texts, const std::string& other) {
+      return k < texts.size() ? texts[k] : other;
+    };
+    text += std::string(k > 0 ? "," : "") + "\n" +
+            CameraText(rig.rig.cameras[k], of_camera(rig.camera_names, std::to_string(k)),
+                       of_camera(rig.camera_images, ""));
+  }
+  return PrintableJson(text + "]}\n");
+}
+
+bool WriteRigFile(const std::string& path, const RigFile& rig, std::string* error) {
+  return WriteWholeFile(path, RigFileText(rig), error);
 }
 
 }  // namespace rigel

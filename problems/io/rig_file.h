@@ -44,6 +44,15 @@ bool ReadRigFile(const std::string& path, RigFile* rig, std::string* error);
 // The same for text in memory; `name` stands for the path in messages.
 bool ParseRigFile(std::string_view text, const std::string& name, RigFile* rig, std::string* error);
 
+// The text of such a file, which reads back as the same rig. The rig passes Rig::IsValid, and the
+// cameras have image sizes; there may be fewer names and images than cameras. A camera's sigma is
+// written if both its parts are positive.
+std::string RigFileText(const RigFile& rig);
+
+// The file appears complete or not at all (whole_file.h). False with a message if it cannot be
+// written.
+bool WriteRigFile(const std::string& path, const RigFile& rig, std::string* error);
+
 }  // namespace rigel
 
 #endif  // RIGEL_PROBLEMS_IO_RIG_FILE_H_

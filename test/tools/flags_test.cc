@@ -65,6 +65,9 @@ std::map<std::string, Args> FlagsOfTools() {
                                     "ratio",        "resume",       "rig",
                                     "sequence",     "stride",       "sync_tolerance_ms",
                                     "threads",      "time_unit_s",  "tracks"}},
+      {"rig",
+       {"calibration", "cameras", "colmap_cameras", "down", "format", "forward", "ground_m",
+        "index", "name", "output", "size"}},
       {"simulate",
        {"calibration_sigma_deg",
         "calibration_sigma_m",
@@ -107,6 +110,7 @@ Args Minimal(const std::string& tool) {
   if (tool == "match") {
     return {"--euroc_root=/proc/nonexistent/of/rigel", "--output=/proc/nonexistent/of/rigel"};
   }
+  if (tool == "rig") return {"--calibration=/proc/nonexistent/of/rigel"};
   if (tool == "simulate") return {"--output=/proc/nonexistent/of/rigel", "--pairs=1"};
   return {"--matches=/proc/nonexistent/of/rigel"};
 }
@@ -121,6 +125,9 @@ void ExpectUsageError(const std::string& tool, const Args& wrong, const std::str
 
 Args Tools() {
   Args tools = {"benchmark", "calibrate_prior", "compare", "convert", "estimate", "simulate"};
+#ifdef RIGEL_HAS_RIG
+  tools.push_back("rig");
+#endif
 #ifdef RIGEL_HAS_MATCH
   tools.push_back("match");
 #endif

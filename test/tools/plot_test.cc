@@ -69,6 +69,50 @@ TEST_F(PlotTest, TheSameResultsGiveTheSameFigures) {
   EXPECT_EQ(ReadText(Path("f/outliers.png")), ReadText(Path("g/outliers.png")));
 }
 
+// Four cameras around a car, x forward and z up, as body_from_camera or the inverse.
+std::string RingJson(bool inverted) {
+  const struct {
+    const char *name, *pose, *inverse;
+  } cameras[] = {
+      {"front", R"("q": [0.5, -0.5, 0.5, -0.5], "s": [2, 0, 1.5])",
+       R"("q": [0.5, 0.5, -0.5, 0.5], "s": [0, 1.5, -2])"},
+      {"back", R"("q": [0.5, -0.5, -0.5, 0.5], "s": [0, 0, 1.5])",
+       R"("q": [0.5, 0.5, 0.5, -0.5], "s": [0, 1.5, 0])"},
+      {"left", R"("q": [0.7071067811865476, -0.7071067811865476, 0, 0], "s": [1, 0.5, 1.5])",
+       R"("q": [0.7071067811865476, 0.7071067811865476, 0, 0], "s": [-1, 1.5, -0.5])"}};
+  std::string text;
+  for (const auto& camera : cameras) {
+    text += std::string(text.empty() ? "" : ", ") + R"({"name": ")" + camera.name +
+            R"(", "model": "opencv_fisheye", "width": 640, "height": 480,
+               "parameters": [200, 200, 319.5, 239.5, 0.01, 0, 0, 0], )" +
+            (inverted ? camera.inverse : camera.pose) + "}";
+  }
+  return R"({"format": "rigel-rig 1", "name": "car", "ground_m": 0.3, "cameras": [)" + text + "]}";
+}
+
+TEST_F(PlotTest, DrawsRigs) {
+  SKIP_WITHOUT_MATPLOTLIB();
+  WriteText(Path("rig.json"), RingJson(false));
+  WriteText(Path("inverted.json"), RingJson(true));
+  WriteText(Path("older.json"), R"({"cameras": [{"name": "a", "model": "brown k1 k2 p1 p2 k3",
+    "fx": 7, "fy": 8, "cx": 3, "cy": 4, "distortion": [0.1, 0, 0, 0, 0], "width": 6, "height": 8,
+    "q": [1, 0, 0, 0], "s": [5e5, 0, 0]}]})");
+  ASSERT_EXIT_CODE(RunTool("plot.py", {Path("rig.json"), Path("inverted.json"), Path("older.json"),
+                                       "--output=" + Path("f")}),
+                   0);
+  for (const char* name : {"rig", "inverted", "older"}) ExpectFigure(Path("f/") + name);
+  EXPECT_THAT(ReadText(Path("f/rig.svg")),
+              AllOf(HasSubstr("car: 3 cameras"), HasSubstr(">front<"), HasSubstr(">left<"),
+                    HasSubstr("right, -y [m]"), HasSubstr("forward, +x [m]"), HasSubstr("down, -z"),
+                    HasSubstr("ground"), Not(HasSubstr("warning"))));
+  EXPECT_THAT(ReadText(Path("f/inverted.svg")), HasSubstr("warning: poses look inverted"));
+  EXPECT_THAT(ReadText(Path("f/older.svg")), HasSubstr("the body's origin is 5e+05 m away"));
+  WriteText(Path("rig.json"), R"({"format": "rigel-rig 1", "cameras": [{"q": 1}]})");
+  const Outcome run = RunTool("plot.py", {Path("rig.json"), "--output=" + Path("f")});
+  EXPECT_EXIT_CODE(run, 1);
+  EXPECT_THAT(run.err, HasSubstr("rig.json: not of its format 'rigel-rig 1'"));
+}
+
 TEST_F(PlotTest, NeedsNoHome) {
   SKIP_WITHOUT_MATPLOTLIB();
   WritePoses(Path("poses.txt"));

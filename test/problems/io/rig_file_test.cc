@@ -115,6 +115,52 @@ TEST(RigFile, ReadsOlderKeys) {
   }
 }
 
+TEST(RigFile, WhatIsWrittenReadsBackTheSame) {
+  RigFile file = MustRead(
+      R"({"format": "rigel-rig 1", "name": "car \\u2028", "ground_m": 0.4, "down": [0, 0, -1],
+          "forward": [1, 0, 0], "cameras": [
+          {"name": "front", "model": "pinhole", "parameters": [700.1, 701, 320, 240],
+           "camera_sigma": [0.5, 0.02], "time_offset": -0.01, "images": "front/*.jpg", )" +
+      std::string(kRest) + R"(, {"model": "opencv", "parameters": [1, 2, 3, 4, 0, 0, 0, 1e-3], )" +
+      kRest + "]}");
+  EXPECT_EQ(file.camera_images, (std::vector<std::string>{"front/*.jpg", ""}));
+  for (const CameraCase& camera_case : CameraCases()) {
+    RigCamera camera = file.rig.cameras[0];
+    camera.intrinsics = camera_case.camera;
+    camera.Q = Eigen::AngleAxisd(0.1 * file.rig.size(), Eigen::Vector3d(1, 2, 3).normalized())
+                   .toRotationMatrix();
+    file.rig.cameras.push_back(camera);
+    file.camera_names.emplace_back(camera_case.name);
+    file.camera_images.emplace_back();
+  }
+  const std::string text = RigFileText(file);
+  const RigFile again = MustRead(text);
+  EXPECT_EQ(again.name, file.name);
+  EXPECT_EQ(again.ground_m, file.ground_m);
+  EXPECT_EQ(again.down, file.down);
+  EXPECT_EQ(again.forward, file.forward);
+  EXPECT_EQ(again.camera_names, file.camera_names);
+  EXPECT_EQ(again.camera_images, file.camera_images);
+  ASSERT_EQ(again.rig.size(), file.rig.size());
+  for (int k = 0; k < file.rig.size(); ++k) {
+    const RigCamera &a = file.rig.cameras[k], &b = again.rig.cameras[k];
+    EXPECT_TRUE(SameLens(a.intrinsics, b.intrinsics));
+    EXPECT_EQ(a.intrinsics.width, b.intrinsics.width);
+    EXPECT_EQ(a.intrinsics.height, b.intrinsics.height);
+    EXPECT_LT((a.Q - b.Q).norm(), 1e-15);
+    EXPECT_EQ(a.s, b.s);
+    EXPECT_DOUBLE_EQ(a.rotation_sigma, b.rotation_sigma);
+    EXPECT_EQ(a.position_sigma, b.position_sigma);
+    EXPECT_EQ(a.time_offset, b.time_offset);
+  }
+  // Names may be of no encoding, and missing.
+  RigFile bare;
+  bare.rig = file.rig;
+  bare.name = "car\xff";
+  bare.camera_names = {"left\x1b"};
+  EXPECT_EQ(MustRead(RigFileText(bare)).camera_names[1], "1");
+}
+
 TEST(RigFile, BrokenOnesAreRefused) {
   const std::string good = OneCamera(R"("model": "pinhole", "parameters": [7, 8, 3, 4])");
   const struct {
