@@ -97,6 +97,7 @@ class Estimator {
   bool TakeMotion();
   void Refine();
   void Judge();
+  std::string WhyRaysAreMissing() const;
   void CheckRig(const Doubt& doubt);
   bool ExceedsChanceUnrefined() const;
   bool Refined() const { return estimate_.refine.IsSolutionUsable(); }
@@ -190,9 +191,10 @@ bool Estimator::TakeMotion() {
   estimate_.trials = std::move(search_.trials);
   estimate_.stopped = stop_.reason();
   if (search_.solver == nullptr) {
+    const std::string without_rays = WhyRaysAreMissing();
     return Refuse(matches_.size() < solvers_[0]->sample_size ? EstimateStatus::kTooFewMatches
                                                              : EstimateStatus::kNoSolution,
-                  estimate_.trials[0].note);
+                  estimate_.trials[0].note + (without_rays.empty() ? "" : "; " + without_rays));
   }
   estimate_.solver = search_.solver->name;
   const RansacResult<Solution>& ransac = search_.best;
@@ -257,6 +259,8 @@ void Estimator::Judge() {
     if (options_.solver != kAutoSolver && search_.solver->prior != PriorKind::kNone) {
       estimate_.message += "; is the prior right?";
     }
+    const std::string without_rays = WhyRaysAreMissing();
+    if (!without_rays.empty()) estimate_.message += "; " + without_rays;
     if (estimate_.stopped != StopReason::kNone) estimate_.message += "; " + stop_.Message();
     return;
   }
@@ -277,6 +281,15 @@ void Estimator::Judge() {
   }
 }
 
+// One clause if many pixels have no ray; else empty.
+std::string Estimator::WhyRaysAreMissing() const {
+  constexpr double kMany = 0.1;  // the black corners of fisheyes have fewer
+  const int without = matches_.num_given() - matches_.size();
+  if (!(without > kMany * matches_.num_given())) return "";
+  return std::to_string(without) + " of " + std::to_string(matches_.num_given()) +
+         " matches have a pixel without a ray; are the parameters of the cameras right?";
+}
+
 void Estimator::CheckRig(const Doubt& doubt) {
   EstimateOptions again = options_;
   again.time_limit = stop_.SecondsLeft();
@@ -289,6 +302,10 @@ void Estimator::CheckRig(const Doubt& doubt) {
   const bool prior_is_doubted = doubt.SaysWrong() && search_.solver->prior != PriorKind::kNone;
   estimate_.rig_doubts = FindRigDoubts(pair_, !options_.refine.hold_distance, prior_is_doubted,
                                        estimate_.refine, inliers_with);
+  const std::string without_rays = WhyRaysAreMissing();
+  if (!without_rays.empty()) {
+    estimate_.rig_doubts.push_back({RigDoubtKind::kNoRays, 0, 0, without_rays});
+  }
 }
 
 }  // namespace

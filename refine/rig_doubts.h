@@ -30,6 +30,7 @@ enum class RigDoubtKind {
   kFrozen,   // camera1 shows the same image twice
   kFewFit,   // few of the matches between camera1 and camera2 fit
   kSwapped,  // more would fit if the two were swapped
+  kNoRays,   // many pixels have no ray through their lens; the cameras are not said
 };
 
 // One contradiction between the matches of a frame pair and its rig.

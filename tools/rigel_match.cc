@@ -55,7 +55,7 @@ DEFINE_string(
 DEFINE_bool(landmarks, true,
             "write the column landmark: rows of one number see one point. Also matches the images "
             "of one frame with each other. Default with --kitti_root and --euroc_root: only with "
-            "--tracks");
+            "--tracks or --landmarks");
 DEFINE_string(tracks, "",
               "also write the landmarks of all frames, as a track file (docs/formats.md)");
 DEFINE_int32(first, 0, "first frame");
@@ -280,7 +280,11 @@ int Run() {
   if (!ran) return Failure(error);
   Report(summary);
   sensors.Report();
-  if (!FLAGS_tracks.empty()) {
+  const bool all_made = summary.errors.empty() && summary.missing.empty();
+  if (!FLAGS_tracks.empty() && !all_made) {
+    std::cerr << "no tracks were written: they need all match files; make the missing ones with "
+                 "--resume\n";
+  } else if (!FLAGS_tracks.empty()) {
     TracksSummary tracks;
     const std::string path = FLAGS_tracks == "-" ? "/dev/stdout" : FLAGS_tracks;
     if (!WriteTracks(options, sequence, FLAGS_output, path, &tracks, &error)) {
@@ -289,7 +293,7 @@ int Run() {
     std::cerr << "wrote " << tracks.landmarks << " landmarks with " << tracks.observations
               << " observations to " << PrintablePath(FLAGS_tracks) << "\n";
   }
-  return ExitCode(summary.errors.empty() && summary.missing.empty());
+  return ExitCode(all_made);
 }
 
 }  // namespace

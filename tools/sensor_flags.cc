@@ -249,6 +249,7 @@ std::string SensorSource::Settings() {
   for (const auto& [sensor, flags] : FlagsOfSensors()) {
     if (!IsGiven(sensor)) continue;
     text += "sensor " + sensor + "\n";
+    names.push_back(sensor);
     names.insert(names.end(), flags.begin(), flags.end());
   }
   if (text.empty()) return "";

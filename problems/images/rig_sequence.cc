@@ -92,6 +92,13 @@ class Reader {
     images_.assign(num_cameras(), Images());
     for (int k = 0; k < num_cameras(); ++k) {
       const std::string camera = by_number ? std::to_string(k) : file_.camera_names[k];
+      for (int other = 0; other < k; ++other) {
+        const std::string name = by_number ? std::to_string(other) : file_.camera_names[other];
+        if (Pattern(k, camera) == Pattern(other, name)) {
+          return Fail("cameras " + std::to_string(other) + " and " + std::to_string(k) + " (" +
+                      Name(k) + ") have the same images, expected names or patterns that differ");
+        }
+      }
       if (!FindImages(Pattern(k, camera), &images_[k], error_)) return false;
     }
     return true;

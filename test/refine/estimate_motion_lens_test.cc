@@ -45,6 +45,28 @@ FramePair StreetPair(const Rig& rig, int index) {
   return pair;
 }
 
+// Wrong parameters leave pixels without rays: that is said, with and without a motion.
+TEST(EstimateMotion, ManyPixelsWithoutARayAreSaid) {
+  FramePair pair = StreetPair(FisheyeCar(), 0);
+  // Beyond its largest image circle a lens has no rays.
+  Camera& camera = pair.rig.cameras[0].intrinsics;
+  camera.parameters[0] = camera.parameters[1] = 60.0;
+  const auto says = [](const std::string& text) {
+    return text.find(" matches have a pixel without a ray; are the parameters") !=
+           std::string::npos;
+  };
+  const MotionEstimate e = EstimateMotion({}, pair);
+  ASSERT_EQ(e.status, EstimateStatus::kSuccess) << e.message;
+  ASSERT_FALSE(e.rig_doubts.empty());
+  EXPECT_TRUE(says(e.rig_doubts.back().message)) << e.rig_doubts.back().message;
+  for (RigCamera& c : pair.rig.cameras) {
+    c.intrinsics.parameters[0] = c.intrinsics.parameters[1] = 1e-3;
+  }
+  const MotionEstimate none = EstimateMotion({}, pair);
+  EXPECT_NE(none.status, EstimateStatus::kSuccess);
+  EXPECT_TRUE(says(none.message)) << none.message;
+}
+
 TEST(EstimateMotion, FisheyesAndMixedRigsReachTheMotion) {
   for (const bool mixed : {false, true}) {
     const Rig rig =

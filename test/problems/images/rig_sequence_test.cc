@@ -72,6 +72,12 @@ class RigSequence : public testing::Test {
   RigSequenceOptions options_;
 };
 
+TEST_F(RigSequence, CamerasOfOneNameAreRefused) {
+  WriteRig({CameraJson("left"), CameraJson("left")});
+  Touch({"left/1.png", "left/2.png"});
+  EXPECT_THAT(Error(), HasSubstr("cameras 0 and 1 (left) have the same images, expected names"));
+}
+
 TEST_F(RigSequence, FramesOfOneName) {
   Touch({"left/9.png", "left/10.png", "left/11.png", "right-2/9.png", "right-2/11.png"});
   const ImageSequence sequence = Read();
