@@ -1,8 +1,11 @@
 // rigel_convert: adds what the vehicle's sensors say to match files.
+#include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <gflags/gflags.h>
@@ -83,6 +86,15 @@ int Run() {
   SensorSource sensors;
   if (targets.empty() || !sensors.Load(&error) || !MakeDirectory(FLAGS_output, &error)) {
     return Failure(error);
+  }
+
+  const auto replaced = std::count_if(targets.begin(), targets.end(), [](const std::string& path) {
+    std::error_code ignored;
+    return std::filesystem::exists(path, ignored);
+  });
+  if (replaced > 0) {
+    std::cerr << replaced << " files of an earlier run in " << PrintablePath(FLAGS_output)
+              << " are replaced, with the lines of that run\n";
   }
 
   errors.clear();

@@ -307,7 +307,10 @@ class Reader {
       if (missing == 0) continue;
       Note("camera " + Name(k) + " has no image of " + std::to_string(missing) + " of " +
            std::to_string(keys_.size()) + " frames, the first is frame " + first +
-           "; they are matched without it");
+           "; they are matched without it" +
+           (options_.order == FrameOrder::kTime && 2 * missing >= keys_.size()
+                ? ". If it fires at other times, raise the tolerance or state its time_offset"
+                : ""));
     }
     return true;
   }
