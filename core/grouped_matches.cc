@@ -89,10 +89,7 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
   for (const RigCamera& camera : rig.cameras) {
     unproject_.emplace_back(camera.Q * Unprojection(camera));
   }
-  if (interval > 0) {
-    for (const RigCamera& camera : rig.cameras) later_.push_back(camera.time_offset / interval);
-    if (std::all_of(later_.begin(), later_.end(), [](double a) { return a == 0; })) later_.clear();
-  }
+  SetTimes(interval);
   const size_t n = points.size();
   matches_.reserve(n);
   rows_.resize((general_ ? 4 + kGeneralArrays : 4) * n + kKernelPadding);
@@ -115,6 +112,12 @@ GroupedMatches::GroupedMatches(const Rig& rig, const std::vector<Match>& matches
       SetPoint(k, side, point, factor, n);
     }
   }
+}
+
+void GroupedMatches::SetTimes(double interval) {
+  if (!(interval > 0)) return;
+  for (const RigCamera& camera : rig_.cameras) later_.push_back(camera.time_offset / interval);
+  if (std::all_of(later_.begin(), later_.end(), [](double a) { return a == 0; })) later_.clear();
 }
 
 void GroupedMatches::SetPoint(size_t k, int side, const RowPoint& point, double factor, size_t n) {

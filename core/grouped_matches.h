@@ -127,6 +127,7 @@ class GroupedMatches {
   std::vector<size_t> StretchBegins(size_t count) const;
   GroupedMatches Subset(const std::vector<size_t>& taken) const;
   RowPoint PointAt(int k, int side) const;
+  void SetTimes(double interval);
   // Of n matches; `factor` times its derivatives.
   void SetPoint(size_t k, int side, const RowPoint& point, double factor, size_t n);
 

@@ -109,7 +109,7 @@ RigTest TestRig(const RigScore& score);
 // a pair have in common are not in its variance. So the variance of the sum is measured, too: by
 // how the scores of the pairs scatter about the turns of the run. Pairs that follow each other may
 // scatter alike. Pairs that are far off count less. A score of another shape is left out.
-RigScore ScoreOfRun(const std::vector<RigScore>& pairs);
+RigScore ScoreOfRun(const std::vector<RigScore>& scores);
 
 }  // namespace rigel
 

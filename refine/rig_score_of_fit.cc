@@ -149,8 +149,9 @@ RigScore ScoreOfFit::Score(const std::vector<double>& psi2_of) const {
   score.variance.setZero(size_, size_);
   for (size_t g = 0; g < sums_.size(); ++g) {
     const Eigen::MatrixXd& T = projected_[g];
-    score.gradient.noalias() += T.transpose() * sums_[g].gradient;
-    const Eigen::MatrixXd information = T.transpose() * (sums_[g].curvature * T);
+    score.gradient += T.transpose().lazyProduct(sums_[g].gradient);
+    const Eigen::MatrixXd weighted = sums_[g].curvature.lazyProduct(T);
+    const Eigen::MatrixXd information = T.transpose().lazyProduct(weighted);
     score.information += information;
     score.variance += psi2_of[g] * information;
   }

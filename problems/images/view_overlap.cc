@@ -34,7 +34,7 @@ double ViewShare(const Rig& rig, int i, int j) {
                         (row + 0.5) / kRows * from.intrinsics.height);
       Eigen::Vector3d ray;
       if (Unproject(from.intrinsics, pixel, &ray) && Sees(from.intrinsics, pixel, ray)) {
-        rays.push_back(from.Q * ray);
+        rays.emplace_back(from.Q * ray);
       }
     }
   }

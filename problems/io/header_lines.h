@@ -30,7 +30,7 @@ class CameraLines {
   // After all lines: the rig. `rows` is the keyword before which the lines have to be.
   bool Finish(std::string_view rows, MatchLines* lines, Rig* rig) const;
 
-  static void Write(const Rig& rig, MatchText* text);
+  static void Write(const Rig& rig, MatchText* f);
 
  private:
   // What lines say of cameras, by their numbers. All but the line is of one kind of line.
