@@ -59,10 +59,12 @@ Turns TurnsOf(const RigScore& score, const DeterminedTurns& determined) {
   Turns turns;
   turns.value = -C * score.gradient;
   turns.by_noise = C * score.variance * C;
-  const Eigen::MatrixXd stated = C * score.by_calibration;
   turns.by_calibration = std::pow(DegToRad(kUsualTurnDeg), 2) * determined.directions() *
                          determined.directions().transpose();
-  if (stated.cols() > 0) turns.by_calibration += stated * stated.transpose();
+  if (score.by_calibration.cols() > 0) {
+    const Eigen::MatrixXd stated = C * score.by_calibration;
+    turns.by_calibration += stated * stated.transpose();
+  }
   return turns;
 }
 
