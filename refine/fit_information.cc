@@ -53,15 +53,8 @@ MotionNormalEquations CostAt(const FittedInliers& fit, const GroupedMatches& mat
   MotionNormalEquations sum;
   for (size_t g = 0; g < matches.groups().size(); ++g) {
     const MatchGroup& group = matches.groups()[g];
-    const double sigma = noise.sigma_of[g];
-    SampsonKernelOptions options;
-    options.loss = fit.loss;
-    options.loss_scale = fit.loss_scale_sigmas * sigma;
-    MotionNormalEquations equations;
-    AddNormalEquations(options, matches, group, matches.Rows(group),
-                       fit.factors.data() + group.begin, pose, parts, &equations);
-    sum.cost += equations.cost / (sigma * sigma);
-    sum.gradient += equations.gradient / (sigma * sigma);
+    AddRobustEquations(fit.loss, fit.loss_scale_sigmas, noise.sigma_of[g], matches, group,
+                       fit.factors.data() + group.begin, pose, parts, &sum);
   }
   return sum;
 }

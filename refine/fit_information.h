@@ -51,7 +51,7 @@ FitInformation InformationOfFit(const FittedInliers& fit, const GroupedMatches& 
 // How the cost rises along the motions that the matches determine worst, over how it would with the
 // curvature S. Far below 1 the minimum is a narrow one that noise made in a wider valley.
 struct CostRise {
-  double least = 1.0;                     // of some steps of three standard deviations
+  double least = 1.0;                    // of some steps of three standard deviations
   Matrix6d widening = Matrix6d::Zero();  // what the covariance lacks
 };
 // With |t| as it is.

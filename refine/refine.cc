@@ -349,12 +349,11 @@ bool Refiner::ExceedsChanceAt(double threshold_px) const {
 
 // The rotation of a rig whose points move by no more than noise, if it is one that stands.
 std::optional<StandingMotion> Refiner::FindStanding() const {
-  constexpr double kSigmas = 3.0;  // of a stated distance
   // Of the limit: a wrong turn of the full model makes a parallax of its own.
   constexpr double kNearly = 2.0;
   if (options_.form != RefineForm::kFull || options_.residual != ResidualKind::kSampson ||
       options_.hold_distance || !(summary_.parallax_px <= kNearly * summary_.parallax_limit_px) ||
-      prior_.distance.value_or(0.0) > kSigmas * prior_.distance_sigma || OnALine(matches_, fit_)) {
+      !MayStand(prior_) || OnALine(matches_, fit_)) {
     return std::nullopt;
   }
   return FitStanding(matches_, fitter_.shared(), point_, fit_, options_.loss,

@@ -114,14 +114,8 @@ void StandingFit::SetRows() {
     const MatchGroup& group = matches_.groups()[g];
     const double sigma = fit_.noise.sigma_of[g];
     if (group.camera1 != group.camera2) {
-      SampsonKernelOptions options;
-      options.loss = loss_;
-      options.loss_scale = scale_ * sigma;
-      MotionNormalEquations equations;
-      AddNormalEquations(options, matches_, group, matches_.Rows(group),
-                         fit_.factors.data() + group.begin, pose, SampsonParts::kAll, &equations);
-      of_others_.gradient += equations.gradient / (sigma * sigma);
-      of_others_.curvature += equations.curvature / (sigma * sigma);
+      AddRobustEquations(loss_, scale_, sigma, matches_, group, fit_.factors.data() + group.begin,
+                         pose, SampsonParts::kAll, &of_others_);
       continue;
     }
     const Eigen::Matrix3d A = matches_.PlacesOf(group, pose, false).A1;
@@ -266,6 +260,11 @@ void StandingFit::SetInliers(StandingMotion* motion) const {
 }
 
 }  // namespace
+
+bool MayStand(const MotionPrior& prior) {
+  constexpr double kSigmas = 3.0;
+  return prior.distance.value_or(0.0) <= kStillMetres + kSigmas * prior.distance_sigma;
+}
 
 std::optional<StandingMotion> FitStanding(const GroupedMatches& matches,
                                           const std::vector<SharedPixel>& shared,

@@ -14,6 +14,7 @@
 #include "rigel/core/eigen_types.h"
 #include "rigel/core/grouped_matches.h"
 #include "rigel/core/pose.h"
+#include "rigel/core/prior.h"
 #include "rigel/refine/fit.h"
 #include "rigel/refine/least_squares/least_squares.h"
 
@@ -37,6 +38,10 @@ inline constexpr double kNearDepth = 7.0;
 // A body whose origin is so near its cameras turns about it on the spot; others about the centre of
 // the rig. Typical lengths.
 inline constexpr double kMaxPivot = 10.0;
+
+// True if no distance is stated that contradicts it: one of more than kStillMetres and three sigma.
+bool MayStand(const MotionPrior& prior);
+inline constexpr double kStillMetres = 1e-2;  // odometry of a car that stands is within
 
 // From the fit of the full model: its rotation, noise, gates and inliers. `point` of the body is
 // the origin of the matches' frame, whose motion it is. Nothing if the points of some camera move

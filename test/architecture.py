@@ -31,7 +31,7 @@ MAY_USE = {
     "problems/sensors": "core problems/io",
     "problems/scenes": "core problems/io",
     "problems/rigs": "core problems/io",
-    "problems/images": "core problems/io",
+    "problems/images": "core problems/io problems/rigs",
     "problems/trajectories": "core refine problems/io",
     "problems/calibration": "core problems/io",
     "problems/evaluation":

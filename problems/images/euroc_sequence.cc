@@ -9,17 +9,15 @@
 #include <map>
 #include <system_error>
 
-#include <yaml-cpp/yaml.h>
-
 #include "rigel/problems/images/frame_stamps.h"
 #include "rigel/problems/images/rig_sequence.h"
 #include "rigel/problems/io/csv.h"
 #include "rigel/problems/io/directory.h"
-#include "rigel/problems/io/input_file.h"
 #include "rigel/problems/io/parse_number.h"
 #include "rigel/problems/io/printable.h"
 #include "rigel/problems/io/rotation_check.h"
 #include "rigel/problems/io/text_lines.h"
+#include "rigel/problems/rigs/euroc_rig.h"
 
 namespace rigel {
 namespace {
@@ -31,108 +29,14 @@ namespace fs = std::filesystem;
 constexpr int64_t kMaxTruthGap = 50'000'000;
 constexpr double kSecondsPerNanosecond = 1e-9;
 
-// The node's numbers. Throws YAML::Exception with what was expected.
-std::vector<double> Numbers(const YAML::Node& node, const std::string& key, size_t count) {
-  if (!node.IsDefined()) {
-    throw YAML::RepresentationException(YAML::Mark::null_mark(), "the key " + key + " is missing");
-  }
-  const std::string expected =
-      key + ": expected " + std::to_string(count) + " finite numbers in brackets";
-  if (!node.IsSequence() || node.size() != count) {
-    throw YAML::RepresentationException(node.Mark(), expected);
-  }
-  std::vector<double> numbers;
-  for (const YAML::Node& item : node) {
-    double number;
-    if (!item.IsScalar() || !ParseFinite(item.Scalar(), &number)) {
-      throw YAML::RepresentationException(item.Mark(), expected);
-    }
-    numbers.push_back(number);
-  }
-  return numbers;
-}
-
-void ExpectWord(const YAML::Node& sensor, const std::string& key,
-                const std::vector<std::string>& words) {
-  const YAML::Node node = sensor[key];
-  if (!node.IsDefined()) {
-    throw YAML::RepresentationException(YAML::Mark::null_mark(), "the key " + key + " is missing");
-  }
-  const std::string word = node.IsScalar() ? node.Scalar() : "";
-  if (std::find(words.begin(), words.end(), word) == words.end()) {
-    throw YAML::RepresentationException(
-        node.Mark(), key + " is " + Quoted(word) + ", expected " + words.front());
-  }
-}
-
-// Throws YAML::Exception.
-ImageCamera ParseCamera(const YAML::Node& sensor) {
-  if (!sensor.IsMap()) {
-    throw YAML::RepresentationException(YAML::Mark::null_mark(), "not a list of keys and values");
-  }
-  ImageCamera result;
-  RigCamera& camera = result.camera;
-  ExpectWord(sensor, "camera_model", {"pinhole"});
-  ExpectWord(sensor, "distortion_model", {"radial-tangential", "radtan"});
-
-  const YAML::Node pose = sensor["T_BS"];
-  const bool has_data = pose.IsDefined() && pose.IsMap();
-  const std::vector<double> T =
-      Numbers(has_data ? pose["data"] : YAML::Node(YAML::NodeType::Undefined), "T_BS: data", 16);
-  Eigen::Matrix4d body_from_camera;
-  for (int k = 0; k < 16; ++k) body_from_camera(k / 4, k % 4) = T[k];
-  const Eigen::Matrix3d R = body_from_camera.topLeftCorner<3, 3>();
-  if (!IsNearRotation(R) || body_from_camera.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    throw YAML::RepresentationException(pose.Mark(), "T_BS: data is not a rigid motion");
-  }
-  camera.Q = Eigen::Quaterniond(R).normalized().toRotationMatrix();
-  camera.s = body_from_camera.topRightCorner<3, 1>();
-
-  const std::vector<double> k = Numbers(sensor["intrinsics"], "intrinsics", 4);
-  if (!(k[0] > 0) || !(k[1] > 0)) {
-    throw YAML::RepresentationException(sensor["intrinsics"].Mark(),
-                                        "intrinsics: expected positive focal lengths");
-  }
-  const std::vector<double> size = Numbers(sensor["resolution"], "resolution", 2);
-  constexpr double kMaxSide = 1e6;  // pixels: more is a mistake, and still fits an int
-  for (const double pixels : size) {
-    if (!(pixels >= 1 && pixels <= kMaxSide) || pixels != std::floor(pixels)) {
-      throw YAML::RepresentationException(sensor["resolution"].Mark(),
-                                          "resolution: expected the width and height in pixels");
-    }
-  }
-  camera.intrinsics =
-      Camera::Pinhole(k[0], k[1], k[2], k[3], static_cast<int>(size[0]), static_cast<int>(size[1]));
-  const std::vector<double> d =
-      Numbers(sensor["distortion_coefficients"], "distortion_coefficients", 4);
-  result.lens = camera.intrinsics;
-  result.lens->model = CameraModel::kOpencv;
-  std::copy(d.begin(), d.end(), result.lens->parameters + k.size());
-  return result;
-}
-
-bool ReadSensor(const std::string& path, ImageCamera* camera, std::string* error) {
-  constexpr size_t kMaxBytes = size_t{1} << 20;  // EuRoC's files have about 1000 bytes
-  InputBytes bytes;
-  if (!ReadInputFile(path, &bytes, error, kMaxBytes)) return false;
-  std::string_view text = bytes.text();
-  int64_t line;
-  std::string what;
-  if (!CheckText(&text, &line, &what)) {
-    what += ", expected UTF-8 text";
-  } else {
-    try {
-      *camera = ParseCamera(YAML::Load(std::string(text)));
-      return true;
-    } catch (const YAML::Exception& exception) {
-      if (!exception.mark.is_null()) line = exception.mark.line + 1;
-      what = exception.msg;
-    } catch (const std::exception& exception) {
-      what = exception.what();
-    }
-  }
-  *error = Printable(path + (line > 0 ? ":" + std::to_string(line) : "") + ": " + what);
-  return false;
+// Pixels of radial-tangential lenses are moved to those of pinholes. Others stay as they are.
+bool ReadCamera(const std::string& path, ImageCamera* camera, std::string* error) {
+  if (!ReadEurocSensor(path, &camera->camera, error)) return false;
+  Camera& c = camera->camera.intrinsics;
+  if (c.model != CameraModel::kOpencv) return true;
+  camera->lens = c;
+  c = Camera::Pinhole(c.fx(), c.fy(), c.cx(), c.cy(), c.width, c.height);
+  return true;
 }
 
 // Whether a name from a file stays below the folder that it is joined to.
@@ -301,7 +205,7 @@ bool ReadEurocSequence(const std::string& root, const EurocOptions& options,
   for (int k = 0; k < 2; ++k) {
     const fs::path camera = camera_folder(k);
     result.cameras.emplace_back();
-    if (!ReadSensor((camera / "sensor.yaml").string(), &result.cameras.back(), error) ||
+    if (!ReadCamera((camera / "sensor.yaml").string(), &result.cameras.back(), error) ||
         !ReadImageList(camera, &images[k], error)) {
       return false;
     }

@@ -6,8 +6,8 @@
 //   mav0/state_groundtruth_estimate0/data.csv  timestamp [ns], p (x, y, z), q (w, x, y, z), ...;
 //                                              optional
 //
-// The body is that of T_BS and of the ground truth: the IMU. "Down" is -Z of the ground truth's
-// world.
+// The lens may be any of problems/rigs/euroc_rig.h. The body is that of T_BS and of the ground
+// truth: the IMU. "Down" is -Z of the ground truth's world.
 #ifndef RIGEL_PROBLEMS_IMAGES_EUROC_SEQUENCE_H_
 #define RIGEL_PROBLEMS_IMAGES_EUROC_SEQUENCE_H_
 

@@ -14,16 +14,25 @@ namespace {
 namespace fs = std::filesystem;
 
 bool AddSensor(const std::string& path, const std::string& name, RigFile* rig, std::string* error) {
+  RigCamera camera;
+  if (!ReadEurocSensor(path, &camera, error)) return false;
+  AddCamera(name, camera.intrinsics, {camera.Q, camera.s}, rig);
+  return true;
+}
+
+}  // namespace
+
+bool ReadEurocSensor(const std::string& path, RigCamera* camera, std::string* error) {
   const auto parse = [&](const std::string& text) {
     const YAML::Node sensor = ParseYaml(text);
     const Pose pose =
         PoseOfRows(YamlNumbers(sensor, "T_BS"), "T_BS", YamlLine(YamlMember(sensor, "T_BS")));
-    AddCamera(name, KalibrLens(sensor, "distortion_coefficients"), pose, rig);
+    camera->intrinsics = KalibrLens(sensor, "distortion_coefficients");
+    camera->Q = pose.R;
+    camera->s = pose.t;
   };
   return ReadWith(path, parse, error);
 }
-
-}  // namespace
 
 bool ReadEurocRig(const std::string& path, const CalibrationOptions& /*options*/,
                   Calibration* calibration, std::string* error) {

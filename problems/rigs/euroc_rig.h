@@ -8,9 +8,13 @@
 
 #include <string>
 
+#include "rigel/core/rig.h"
 #include "rigel/problems/rigs/calibration.h"
 
 namespace rigel {
+
+// The camera of one sensor.yaml. False with a message of one line if it is no such.
+bool ReadEurocSensor(const std::string& path, RigCamera* camera, std::string* error);
 
 // `path` is mav0, the folder that holds it, or one sensor.yaml. False with a message of one line if
 // it is no such.

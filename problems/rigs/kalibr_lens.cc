@@ -30,8 +30,9 @@ constexpr Lens kLenses[] = {{"pinhole", "radtan", 4, 4, CameraModel::kOpencv},
 
 Camera KalibrLens(const YAML::Node& camera, const std::string& coefficients) {
   const std::string model = YamlWord(camera, "camera_model");
-  std::string distortion =
-      HasKey(camera, "distortion_model") ? YamlWord(camera, "distortion_model") : "none";
+  // Coefficients without a model would be left out.
+  const bool has_distortion = HasKey(camera, "distortion_model") || HasKey(camera, coefficients);
+  std::string distortion = has_distortion ? YamlWord(camera, "distortion_model") : "none";
   if (distortion == "radial-tangential") distortion = "radtan";
   std::vector<double> d;
   if (distortion != "none") d = YamlNumbers(camera, coefficients);

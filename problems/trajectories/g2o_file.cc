@@ -10,6 +10,7 @@
 #include "rigel/problems/io/csv.h"
 #include "rigel/problems/io/printable.h"
 #include "rigel/refine/between_factor.h"
+#include "rigel/refine/standing.h"
 
 namespace rigel {
 namespace {

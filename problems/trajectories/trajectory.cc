@@ -9,12 +9,10 @@
 #include "rigel/problems/io/csv.h"
 #include "rigel/problems/io/printable.h"
 #include "rigel/refine/between_factor.h"
+#include "rigel/refine/standing.h"
 
 namespace rigel {
 namespace {
-
-// Sigmas. A stated distance up to this and kStillMetres more is consistent with zero.
-constexpr double kStillSigmas = 3.0;
 
 struct Step {
   std::string why_not;  // not empty: there is no step
@@ -27,10 +25,9 @@ struct Step {
 
 bool StandsStill(const FramePair& pair, const RefineSummary& refine) {
   if (refine.RigDirectionKnown() || !refine.rotation_observable) return false;
-  const bool has_parallax = !(refine.parallax_px <= refine.parallax_limit_px);
-  if (!refine.stands && (has_parallax || refine.parallax_px < 0)) return false;
-  const MotionPrior& prior = pair.prior;
-  return !prior.distance || *prior.distance <= kStillMetres + kStillSigmas * prior.distance_sigma;
+  const bool no_parallax =
+      refine.parallax_px >= 0 && refine.parallax_px <= refine.parallax_limit_px;
+  return (refine.stands || no_parallax) && MayStand(pair.prior);
 }
 
 bool KnowsLength(const RefineSummary& refine) {

@@ -23,9 +23,8 @@ inline constexpr double kSameTimeShare = 0.1;
 // (between_factor.h), or |t| was held.
 bool KnowsLength(const RefineSummary& refine);
 
-// True if the matches say that the rig moved by less than kStillMetres, and the pair states no
-// distance that contradicts this.
-inline constexpr double kStillMetres = 1e-2;
+// True if the matches say that the rig stands, or that |t| is consistent with zero, and the pair
+// states no distance that contradicts this (MayStand(), standing.h).
 bool StandsStill(const FramePair& pair, const RefineSummary& refine);
 
 // The motion with the rotation of `pose` that leaves the rig's centre where it is. If the centre is

@@ -40,6 +40,22 @@ void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatche
   }
 }
 
+void AddRobustEquations(LossKind loss, double loss_scale_sigmas, double sigma,
+                        const GroupedMatches& matches, const MatchGroup& group,
+                        const double* weights, const Pose& pose, SampsonParts parts,
+                        MotionNormalEquations* sum) {
+  SampsonKernelOptions options;
+  options.loss = loss;
+  options.loss_scale = loss_scale_sigmas * sigma;
+  MotionNormalEquations equations;
+  AddNormalEquations(options, matches, group, matches.Rows(group), weights, pose, parts,
+                     &equations);
+  const double variance = sigma * sigma;
+  sum->cost += equations.cost / variance;
+  sum->gradient += equations.gradient / variance;
+  sum->curvature += equations.curvature / variance;
+}
+
 void Leverages(const GroupedMatches& matches, const MatchGroup& group, const Pose& pose,
                const double* weights, const Matrix6d& covariance, double* leverages) {
   const RowMajor3d F = matches.Fundamental(group, pose);

@@ -27,6 +27,13 @@ void AddNormalEquations(const SampsonKernelOptions& options, const GroupedMatche
                         const MatchGroup& group, const RowArrays& rows, const double* weights,
                         const Pose& pose, SampsonParts parts, MotionNormalEquations* sum);
 
+// Adds the equations of errors over their noise, sigma pixels, under a loss whose scale is so many
+// sigma: of all matches of the group with their weights.
+void AddRobustEquations(LossKind loss, double loss_scale_sigmas, double sigma,
+                        const GroupedMatches& matches, const MatchGroup& group,
+                        const double* weights, const Pose& pose, SampsonParts parts,
+                        MotionNormalEquations* sum);
+
 // w^2 J C J' of each match of the group. J is the derivative of its Sampson error (pixels) by that
 // perturbation, w its weight, C = `covariance`. If C is the covariance of the motion from these
 // matches with unit noise, this is the leverage of the match: 0 to 1. The sum over all matches is

@@ -54,8 +54,8 @@ TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
   ASSERT_EXIT_CODE(run, 0);
   EXPECT_THAT(run.err, IsEmpty());
   const Json report = ParseReport(run.out);
-  EXPECT_THAT(Keys(report), UnorderedElementsAre("format", "rigel_version", "options", "pairs",
-                                                 "rig_test"));
+  EXPECT_THAT(Keys(report),
+              UnorderedElementsAre("format", "rigel_version", "options", "pairs", "rig_test"));
   EXPECT_EQ(report["format"], "rigel-estimate 1");
   EXPECT_EQ(report["options"]["solver"], "auto");
   EXPECT_EQ(report["options"]["confidence"], "0.9999");
@@ -69,9 +69,8 @@ TEST_F(EstimateTest, JsonHasTheMotionsInFull) {
                     "translation_dir_sd_deg", "rig_direction", "rig_direction_sd_deg", "rig_center",
                     "length_sd", "covariance", "covariance_valid", "camera_pairs",
                     "relative_scale_sd", "weakest_direction", "auto", "doubtful", "rig_test"));
-    EXPECT_THAT(Keys(pair["rig_test"]),
-                UnorderedElementsAre("pairs", "chi2", "degrees_of_freedom", "p",
-                                     "p_with_calibration", "cameras"));
+    EXPECT_THAT(Keys(pair["rig_test"]), UnorderedElementsAre("pairs", "chi2", "degrees_of_freedom",
+                                                             "p", "p_with_calibration", "cameras"));
     for (const Json& cameras : pair["camera_pairs"]) {
       EXPECT_LT(std::abs(cameras["median_residual_px"].get<double>()), 0.5);
     }
